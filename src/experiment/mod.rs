@@ -1,0 +1,3 @@
+//! Running a case on a scene, and the results it leaves.
+
+pub mod engine;

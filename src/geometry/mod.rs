@@ -1,0 +1,21 @@
+//! Pure maths: rays, laws of reflection, shapes and their meshes, the camera. No scene, no GPU.
+
+pub mod camera;
+pub mod mesh;
+
+pub use camera::{Camera, Projection};
+pub use mesh::Mesh;
+
+/// A half line. `direction` has unit length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    pub origin: glam::Vec3,
+    pub direction: glam::Vec3,
+}
+
+impl Ray {
+    /// The point `t` metres along the ray.
+    pub fn at(&self, t: f32) -> glam::Vec3 {
+        self.origin + t * self.direction
+    }
+}

@@ -1,0 +1,83 @@
+//! Surfaces, images, environment and light: the inputs of the one shading function.
+
+use glam::{Vec2, Vec3};
+
+/// How a surface looks. Colours are linear Rec.709.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    pub name: String,
+    /// Diffuse albedo; black on a pure mirror.
+    pub pattern: Pattern,
+    /// Present on reflectors.
+    pub mirror: Option<Mirror>,
+}
+
+/// Diffuse albedo over texture coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Pattern {
+    Colour(Vec3),
+    /// Squares of side `size` (texture coordinate units).
+    Checker {
+        even: Vec3,
+        odd: Vec3,
+        size: Vec2,
+    },
+    /// Lines of width `line` at every multiple of `size` (texture coordinate units).
+    Grid {
+        ground: Vec3,
+        lines: Vec3,
+        size: Vec2,
+        line: f32,
+    },
+    /// Index into [`crate::scene::Scene::images`]; one image covers `size` texture coordinate units.
+    Image {
+        image: usize,
+        size: Vec2,
+    },
+}
+
+/// What a reflector does to the light it reflects.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mirror {
+    /// Share of light reflected, 0 to 1.
+    pub reflectance: f32,
+    /// Colour multiplied onto the reflection.
+    pub tint: Vec3,
+}
+
+/// A linear RGB image with half-float precision, row 0 on top; wraps in both directions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    pub width: u32,
+    pub height: u32,
+    /// Row-major, values already rounded to half precision so that CPU and GPU agree.
+    pub texels: Vec<Vec3>,
+}
+
+/// Radiance arriving from infinitely far away.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Environment {
+    Colour(Vec3),
+    /// By the direction's y: `nadir` at -1, `horizon` at 0, `zenith` at 1, linear between.
+    Gradient {
+        zenith: Vec3,
+        horizon: Vec3,
+        nadir: Vec3,
+    },
+    /// Latitude-longitude image, index into [`crate::scene::Scene::images`]. A direction d is at
+    /// u = 1/2 + atan2(d.x, -d.z) / 2 pi, v = acos(d.y) / pi: -z in the middle, +y on top.
+    LatLong {
+        image: usize,
+    },
+}
+
+/// One ambient and one directional light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lighting {
+    /// Ambient radiance, multiplied by the albedo.
+    pub ambient: Vec3,
+    /// Unit vector towards the light.
+    pub towards_sun: Vec3,
+    /// Multiplied by albedo and the cosine to the normal.
+    pub sun: Vec3,
+}

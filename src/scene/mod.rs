@@ -1,0 +1,115 @@
+//! What is drawn: meshes, materials, lights, the camera's path, and how they move.
+//!
+//! A [`Scene`] comes from a TOML file ([`load`]); a [`Moment`] is one frame of it. Neither knows
+//! how it will be drawn: [`crate::truth`] traces it, [`crate::stages`] uploads it.
+
+pub mod material;
+pub mod record;
+
+use glam::{Affine3A, Vec3};
+
+use crate::geometry::{Camera, Mesh};
+pub use material::{Environment, Image, Lighting, Material, Mirror, Pattern};
+pub use record::{FrameRecord, Ids, Lobe, ReflectionRecord, Source, Status};
+
+/// Index into [`Scene::objects`]; also what the images of object ids hold.
+pub type ObjectId = u32;
+
+/// The object id that means "no object".
+pub const NO_OBJECT: ObjectId = u32::MAX;
+
+/// A scene file, read and checked. Everything is in metres, world y up.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    pub name: String,
+    /// One line for `list scenes`.
+    pub about: String,
+    /// blake3 over the scene text and every asset it names, hexadecimal.
+    pub hash: String,
+    /// Length of the animation; frame numbers are 0..frames.
+    pub frames: u32,
+    /// Frames per second of the animation.
+    pub rate_hz: f32,
+    pub camera: CameraPath,
+    pub objects: Vec<Object>,
+    pub meshes: Vec<Mesh>,
+    pub materials: Vec<Material>,
+    pub images: Vec<Image>,
+    pub environment: Environment,
+    pub lighting: Lighting,
+    /// Longest chain of mirrors the truth follows, at least 1.
+    pub bounces: u32,
+}
+
+/// One material on one mesh. A file with several materials gives several objects of one group.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// Unique; parts are called `group.part`.
+    pub name: String,
+    pub group: String,
+    /// Index into [`Scene::meshes`].
+    pub mesh: usize,
+    /// Index into [`Scene::materials`].
+    pub material: usize,
+    /// The closed form the mesh approximates, in object space, where there is one.
+    pub surface: Option<Surface>,
+    pub motion: Motion,
+}
+
+/// Closed forms in object space, centred at the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Surface {
+    Sphere { radius: f32 },
+}
+
+/// Where an object is over time. Motions are rigid; sizes are in the mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Motion {
+    Still(Affine3A),
+    /// Poses at frames in rising order, blended linearly (rotations spherically), held outside.
+    Keys(Vec<(f32, Affine3A)>),
+    /// `pose` turned about the vertical axis through `centre`, one turn every `period` frames.
+    Orbit {
+        pose: Affine3A,
+        centre: Vec3,
+        period: f32,
+    },
+}
+
+/// Where the camera is over time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CameraPath {
+    /// Key frames in rising order, positions and targets blended linearly, held outside.
+    Keys(Vec<(f32, Camera)>),
+    /// `camera` turned about the vertical axis through its target: `start` radians at frame 0, one
+    /// turn (or, with `sweep`, a pendulum of that many radians either way) every `period` frames.
+    Orbit { camera: Camera, start: f32, period: f32, sweep: Option<f32> },
+}
+
+/// One frame of a scene: camera and object poses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    pub frame: u32,
+    pub camera: Camera,
+    /// World from object space, one an object.
+    pub poses: Vec<Affine3A>,
+}
+
+impl Scene {
+    pub fn material_of(&self, object: ObjectId) -> &Material {
+        &self.materials[self.objects[object as usize].material]
+    }
+
+    pub fn mesh_of(&self, object: ObjectId) -> &Mesh {
+        &self.meshes[self.objects[object as usize].mesh]
+    }
+
+    pub fn is_reflector(&self, object: ObjectId) -> bool {
+        self.material_of(object).mirror.is_some()
+    }
+
+    /// The objects with a mirror, in rising order.
+    pub fn reflectors(&self) -> Vec<ObjectId> {
+        (0..self.objects.len() as ObjectId).filter(|&o| self.is_reflector(o)).collect()
+    }
+}
