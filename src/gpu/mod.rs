@@ -1,1 +1,33 @@
-//! gpu
+//! The Vulkan layer: a device, its objects, and frames made of named passes.
+//!
+//! Everything is written out: images stay in the GENERAL layout, one full barrier stands between
+//! two passes, and each pass is timed. Objects hold the [`Device`] they came from and free
+//! themselves on drop; a frame's submit waits, so nothing is freed while in use.
+
+mod buffer;
+mod command;
+mod device;
+mod frame;
+mod image;
+mod instance;
+mod pass;
+mod pipeline;
+mod profiler;
+mod shader;
+
+pub use buffer::{Buffer, Slice};
+pub use device::{Device, DeviceInfo};
+pub use frame::{Dump, Frame, Recorded};
+pub use image::{Format, Image, Shape};
+pub use instance::{ValidationLog, list_devices};
+pub use pass::{Draw, Load};
+pub use pipeline::{Attachments, ComputePipeline, Depth, GraphicsPipeline, Stencil};
+pub use profiler::PassTime;
+pub use shader::{Binding, BindingKind, Defines, Shaders};
+
+/// Filters a pass can bind to a WGSL `sampler` variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sampler {
+    Nearest,
+    Linear,
+}
