@@ -129,14 +129,14 @@ fn albedo(material: Material, uv: vec2<f32>) -> vec3<f32> {
             return select(material.first, material.second, odd == 1);
         }
         case 2u: {
-            let cell = uv / material.size;
-            // Distance to the nearest line's middle, texture coordinate units.
-            let away = abs(cell - floor(cell + 0.5)) * material.size;
+            let nearest = floor(uv / material.size + 0.5);
+            let away = abs(uv - nearest * material.size);
             let on_line = min(away.x, away.y) < 0.5 * material.line;
             return select(material.first, material.second, on_line);
         }
         case 3u: {
-            return bilinear(images[material.image], uv / material.size, false);
+            let at = uv / material.size;
+            return bilinear(images[material.image], vec2(at.x, 1.0 - at.y), false);
         }
         default: {
             return material.first;

@@ -17,6 +17,7 @@ struct Plane {
     pad2: u32,
 }
 @group(0) @binding(0) var<uniform> plane: Plane;
+@group(0) @binding(31) var reflector_id: texture_2d<u32>;
 
 struct Varying {
     @builtin(position) clip: vec4<f32>,
@@ -54,7 +55,9 @@ struct Reflected {
 @fragment
 fn fragment(in: Varying, @builtin(primitive_index) triangle: u32) -> Reflected {
     let height = dot(in.position, plane.normal) - plane.offset;
-    if height <= 0.0 {
+    // Two reflectors may share a stencil value; the id image decides.
+    let seen = textureLoad(reflector_id, vec2<u32>(in.clip.xy), 0).x;
+    if height <= 0.0 || seen != plane.object {
         discard;
     }
     // The eye ray towards the virtual point meets the mirror where its height falls to zero.

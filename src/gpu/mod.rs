@@ -20,7 +20,7 @@ pub use device::{Device, DeviceInfo};
 pub use frame::{Dump, Frame, Recorded};
 pub use image::{Format, Image, Shape};
 pub use instance::{ValidationLog, list_devices};
-pub use pass::{Draw, Load};
+pub use pass::{Draw, Load, Pass};
 pub use pipeline::{Attachments, ComputePipeline, Depth, GraphicsPipeline, Stencil};
 pub use profiler::PassTime;
 pub use shader::{Binding, BindingKind, Defines, Shaders};

@@ -124,7 +124,7 @@ impl<'f> Pass<'f> {
         self.bind(name, Resource::Image { image, written: true })
     }
 
-    pub fn buffer(mut self, name: &'static str, buffer: &Buffer) -> Self {
+    pub fn buffer(self, name: &'static str, buffer: &Buffer) -> Self {
         self.frame.keep(buffer.owner.clone());
         self.bind(name, Resource::Slice(buffer.whole()))
     }
@@ -349,34 +349,38 @@ impl<'f> Pass<'f> {
         }
     }
 
-    /// Fill an image with one value.
-    pub fn clear(self, name: &'static str, image: &'f Image, load: Load) -> Result<()> {
-        self.store(name, image).record(None, |pass| {
+    /// Fill images, each with one value; names are their dumps'.
+    pub fn clear(mut self, images: &[(&'static str, &'f Image, Load)]) -> Result<()> {
+        for &(name, image, _) in images {
+            self = self.store(name, image);
+        }
+        self.record(None, |pass| {
             let frame = &pass.frame;
-            let layout = vk::ImageLayout::GENERAL;
-            let (raw, ranges) = (image.owner.raw, [image.range()]);
-            // SAFETY: recording; the image is kept, its format takes clears of this kind.
-            unsafe {
-                frame.device.raw.cmd_clear_color_image(
-                    frame.commands,
-                    raw,
-                    layout,
-                    &load.colour(),
-                    &ranges,
-                );
+            for (_, image, load) in images {
+                // SAFETY: recording; the image is kept, its format takes clears of this kind.
+                unsafe {
+                    frame.device.raw.cmd_clear_color_image(
+                        frame.commands,
+                        image.owner.raw,
+                        vk::ImageLayout::GENERAL,
+                        &load.colour(),
+                        &[image.range()],
+                    );
+                }
             }
             Ok(())
         })
     }
 
-    /// Fill a buffer with one word.
-    pub fn fill(self, buffer: &Buffer, word: u32) -> Result<()> {
-        self.frame.keep(buffer.owner.clone());
+    /// Fill buffers with one word.
+    pub fn fill(self, buffers: &[&Buffer], word: u32) -> Result<()> {
         self.record(None, |pass| {
-            let frame = &pass.frame;
-            let whole = vk::WHOLE_SIZE;
-            // SAFETY: recording; the buffer is kept.
-            unsafe { frame.device.raw.cmd_fill_buffer(frame.commands, buffer.raw, 0, whole, word) };
+            for buffer in buffers {
+                pass.frame.keep(buffer.owner.clone());
+                let (raw, commands) = (&pass.frame.device.raw, pass.frame.commands);
+                // SAFETY: recording; the buffer is kept.
+                unsafe { raw.cmd_fill_buffer(commands, buffer.raw, 0, vk::WHOLE_SIZE, word) };
+            }
             Ok(())
         })
     }
