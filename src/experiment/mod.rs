@@ -1,5 +1,8 @@
 //! Running a case on a scene, and the results it leaves.
 
+pub mod clock;
 pub mod engine;
 pub mod frame_file;
 pub mod output;
+pub mod results;
+pub mod results_file;
