@@ -1,1 +1,10 @@
-//! measure
+//! How far a record is from the truth. Compares two CPU records and knows no method.
+
+pub mod accuracy;
+pub mod colour;
+mod displacement;
+mod field;
+mod judge;
+mod root;
+
+pub use accuracy::{Accuracy, BadShare, Class, Flip, Maps, Quantiles, accuracy};
