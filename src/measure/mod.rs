@@ -1,14 +1,12 @@
-//! How far a frame is from the truth, and how sure a timing is.
+//! How far a record is from the truth, and how sure a timing is. Compares two CPU records and knows
+//! no method.
 
+pub mod accuracy;
+pub mod colour;
+mod displacement;
+mod field;
+mod judge;
+mod root;
 pub mod statistics;
 
-use std::collections::BTreeMap;
-
-use serde::{Deserialize, Serialize};
-
-/// Stand-in until the measures are merged.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct Accuracy {
-    pub bad_share: BTreeMap<String, f64>,
-    pub covered: f64,
-}
+pub use accuracy::{Accuracy, BadShare, Class, Flip, Maps, Quantiles, accuracy};
