@@ -20,12 +20,15 @@ fn main() -> io::Result<()> {
     fs::write(out.join("embedded_shaders.rs"), table)?;
     println!("cargo::rerun-if-changed=shaders");
 
-    println!("cargo::rustc-env=MIRRORBENCH_COMMIT={}", commit(&root).unwrap_or("unknown".into()));
-    for watched in [".git/HEAD", ".git/logs/HEAD"] {
-        if root.join(watched).exists() {
-            println!("cargo::rerun-if-changed={watched}");
+    // Built from a source archive, there is no commit to name.
+    let commit = git(&["describe", "--always", "--dirty", "--exclude=*", "--abbrev=12"]);
+    println!("cargo::rustc-env=MIRRORBENCH_COMMIT={}", commit.as_deref().unwrap_or("unknown"));
+    for name in ["HEAD", "logs/HEAD"] {
+        if let Some(path) = git(&["rev-parse", "--git-path", name]) {
+            println!("cargo::rerun-if-changed={path}");
         }
     }
+    println!("cargo::rerun-if-changed=src");
     Ok(())
 }
 
@@ -41,9 +44,8 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-fn commit(root: &Path) -> Option<String> {
-    let output =
-        Command::new("git").arg("-C").arg(root).args(["rev-parse", "--short=12", "HEAD"]).output();
-    let text = String::from_utf8(output.ok()?.stdout).ok()?;
-    Some(text.trim().to_owned()).filter(|t| !t.is_empty())
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then(|| text.trim().to_owned())
 }

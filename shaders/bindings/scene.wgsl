@@ -11,9 +11,9 @@ struct Vertex {
 
 struct Object {
     // Rows of world from object space.
-    row0: vec4<f32>,
-    row1: vec4<f32>,
-    row2: vec4<f32>,
+    row_x: vec4<f32>,
+    row_y: vec4<f32>,
+    row_z: vec4<f32>,
     material: u32,
     // Position among the scene's reflectors.
     rank: u32,
@@ -59,14 +59,14 @@ struct Light {
     towards_sun: vec3<f32>,
     image: u32,
     sun: vec3<f32>,
-    pad0: u32,
+    pad_a: u32,
     zenith: vec3<f32>,
-    pad1: u32,
+    pad_b: u32,
     // Also the one colour of a plain environment.
     horizon: vec3<f32>,
-    pad2: u32,
+    pad_c: u32,
     nadir: vec3<f32>,
-    pad3: u32,
+    pad_d: u32,
 }
 
 @group(0) @binding(10) var<storage, read> vertices: array<Vertex>;
@@ -79,12 +79,12 @@ struct Light {
 
 fn world_position(object: Object, p: vec3<f32>) -> vec3<f32> {
     let q = vec4(p, 1.0);
-    return vec3(dot(object.row0, q), dot(object.row1, q), dot(object.row2, q));
+    return vec3(dot(object.row_x, q), dot(object.row_y, q), dot(object.row_z, q));
 }
 
 // Poses are rigid, so normals turn as directions do.
 fn world_direction(object: Object, d: vec3<f32>) -> vec3<f32> {
-    return vec3(dot(object.row0.xyz, d), dot(object.row1.xyz, d), dot(object.row2.xyz, d));
+    return vec3(dot(object.row_x.xyz, d), dot(object.row_y.xyz, d), dot(object.row_z.xyz, d));
 }
 
 fn texel(image: ImageInfo, x: i32, y: i32) -> vec3<f32> {
@@ -105,19 +105,19 @@ fn bilinear(image: ImageInfo, uv: vec2<f32>, clamp_v: bool) -> vec3<f32> {
     let f = p - base;
     let w = i32(image.width);
     let h = i32(image.height);
-    let x0 = wrap(i32(base.x), w);
-    let x1 = wrap(i32(base.x) + 1, w);
-    var y0 = i32(base.y);
-    var y1 = y0 + 1;
+    let x_a = wrap(i32(base.x), w);
+    let x_b = wrap(i32(base.x) + 1, w);
+    var y_a = i32(base.y);
+    var y_b = y_a + 1;
     if clamp_v {
-        y0 = clamp(y0, 0, h - 1);
-        y1 = clamp(y1, 0, h - 1);
+        y_a = clamp(y_a, 0, h - 1);
+        y_b = clamp(y_b, 0, h - 1);
     } else {
-        y0 = wrap(y0, h);
-        y1 = wrap(y1, h);
+        y_a = wrap(y_a, h);
+        y_b = wrap(y_b, h);
     }
-    let top = mix(texel(image, x0, y0), texel(image, x1, y0), f.x);
-    let bottom = mix(texel(image, x0, y1), texel(image, x1, y1), f.x);
+    let top = mix(texel(image, x_a, y_a), texel(image, x_b, y_a), f.x);
+    let bottom = mix(texel(image, x_a, y_b), texel(image, x_b, y_b), f.x);
     return mix(top, bottom, f.y);
 }
 

@@ -1,3 +1,4 @@
+enable primitive_index;
 // The scene mirrored in a plane and drawn through the stencil (Diefenbach & Badler 1997;
 // McReynolds & Blythe 1997): what lies behind the mirror's plane is clipped away.
 #import bindings::scene::{vertices, objects, materials, world_position, world_direction, shade}
@@ -12,9 +13,9 @@ struct Plane {
     offset: f32,
     // The reflector.
     object: u32,
-    pad0: u32,
-    pad1: u32,
-    pad2: u32,
+    pad_a: u32,
+    pad_b: u32,
+    pad_c: u32,
 }
 @group(0) @binding(0) var<uniform> plane: Plane;
 @group(0) @binding(31) var reflector_id: texture_2d<u32>;

@@ -1,3 +1,4 @@
+enable primitive_index;
 // Surfaces into the six faces of a cube at once: colour, and where each texel's point is.
 #import bindings::scene::{vertices, objects, materials, world_position, world_direction, shade}
 #import common::camera::facing
@@ -21,7 +22,7 @@ struct Varying {
 fn vertex(
     @builtin(vertex_index) index: u32,
     @builtin(instance_index) object: u32,
-    @builtin(view_index) face: i32,
+    @builtin(view_index) face: u32,
 ) -> Varying {
     let v = vertices[index];
     let o = objects[object];

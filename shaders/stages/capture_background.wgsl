@@ -10,9 +10,9 @@ struct Varying {
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) index: u32, @builtin(view_index) face: i32) -> Varying {
+fn vertex(@builtin(vertex_index) index: u32, @builtin(view_index) face: u32) -> Varying {
     let corner = vec2(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
-    return Varying(vec4(corner, 0.0, 1.0), 0.5 * (corner + 1.0), u32(face));
+    return Varying(vec4(corner, 0.0, 1.0), 0.5 * (corner + 1.0), face);
 }
 
 struct Texel {

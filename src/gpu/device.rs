@@ -1,7 +1,7 @@
 //! The logical device: one queue, one allocator, a few samplers.
 
 use std::mem::ManuallyDrop;
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -17,7 +17,7 @@ use super::{Sampler, Shaders};
 use crate::error::{Error, Result};
 
 /// What a device calls itself.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DeviceInfo {
     pub index: usize,
     pub name: String,
@@ -49,18 +49,13 @@ pub struct Device {
 
 impl Device {
     /// Open a device: `auto` (the first that is no software rasteriser, else the first), `cpu` (the
-    /// first software rasteriser), an index, or a part of a name. `shader_dir` replaces the
-    /// embedded shaders.
+    /// first software rasteriser), an index, or a part of a name.
     ///
     /// # Errors
     /// [`Error::Device`] when none is there, none matches, or it lacks a feature;
     /// [`Error::Shader`] when a shared shader module does not compile.
-    pub fn open(
-        select: &str,
-        validation: bool,
-        shader_dir: Option<PathBuf>,
-    ) -> Result<Arc<Device>> {
-        let shaders = Shaders::new(shader_dir)?;
+    pub fn open(select: &str, validation: bool) -> Result<Arc<Device>> {
+        let shaders = Shaders::new(None)?;
         let instance = Instance::new(validation)?;
         let (physical, info) = choose(&instance, select)?;
         // SAFETY: `physical` came from this instance.
@@ -115,6 +110,15 @@ impl Device {
 
     pub fn info(&self) -> &DeviceInfo {
         &self.info
+    }
+
+    /// Compile from a folder of shaders instead of the embedded ones, from now on.
+    ///
+    /// # Errors
+    /// [`Error::Shader`] when a file is missing, or a shared module does not compile.
+    pub fn read_shaders(&self, folder: &Path) -> Result<()> {
+        *self.shaders() = Shaders::new(Some(folder.to_owned()))?;
+        Ok(())
     }
 
     /// What the validation layers have said; keep it to hear of leaks after the device is gone.

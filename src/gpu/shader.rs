@@ -160,6 +160,11 @@ impl Shaders {
         Ok(module)
     }
 
+    /// Whether an entry file compiles and reflects.
+    pub fn check(&mut self, file: &str, defines: Defines) -> Result<Vec<Binding>> {
+        Ok(self.compile(file, defines)?.bindings)
+    }
+
     /// Compile an entry file to SPIR-V.
     pub(super) fn compile(&mut self, file: &str, defines: Defines) -> Result<Compiled> {
         let module = self.module(file, defines)?;
@@ -181,8 +186,7 @@ impl Shaders {
 fn capabilities() -> Capabilities {
     Capabilities::PRIMITIVE_INDEX
         | Capabilities::MULTIVIEW
-        | Capabilities::CUBE_ARRAY_TEXTURES
-        | Capabilities::STORAGE_TEXTURE_16BIT_NORM_FORMATS
+        | Capabilities::SHADER_FLOAT16_IN_FLOAT32
 }
 
 fn explain(composer: &Composer, error: &ComposerError) -> Error {
@@ -191,7 +195,16 @@ fn explain(composer: &Composer, error: &ComposerError) -> Error {
 
 fn write_spirv(module: &naga::Module, info: &ModuleInfo) -> Result<Vec<u32>, String> {
     use naga::back::spv;
+    // Numbers as written; a variable without one is an error rather than a guess.
+    let bound = module.global_variables.iter().filter_map(|(_, v)| v.binding);
+    let binding_map = bound
+        .map(|at| {
+            let (descriptor_set, binding) = (at.group, at.binding);
+            (at, spv::BindingInfo { descriptor_set, binding, binding_array_size: None })
+        })
+        .collect();
     let options = spv::Options {
+        binding_map,
         lang_version: (1, 4),
         // Native Vulkan clip space; names for validation messages and captures.
         flags: spv::WriterFlags::DEBUG,

@@ -70,7 +70,7 @@ struct EnvironmentMap {
 
 fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     let mut defines = setup.mode.defines();
-    if setup.values.choice("index") == "surface" {
+    if setup.values.is("index", "surface") {
         defines.push(("INDEX_SURFACE", 1));
     }
     let file = "environment_map/reflect.wgsl";
@@ -78,7 +78,7 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         device: setup.device.clone(),
         stage: CaptureStage::new(setup.device)?,
         reflect: ComputePipeline::new(setup.device, file, &defines)?,
-        size: setup.values.integer("size") as u32,
+        size: setup.values.u32("size"),
         maps: Vec::new(),
     }))
 }

@@ -5,6 +5,7 @@
 
 pub mod case;
 mod environment_map;
+pub mod nearest;
 mod none;
 pub mod params;
 mod planar_mirror;

@@ -6,9 +6,7 @@ use glam::Vec3;
 
 use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
 use crate::error::{Error, Result};
-use crate::gpu::{
-    Attachments, ComputePipeline, Depth, Frame, GraphicsPipeline, Load, Stencil,
-};
+use crate::gpu::{Attachments, ComputePipeline, Depth, Frame, GraphicsPipeline, Load, Stencil};
 use crate::scene::{Moment, ObjectId, Scene};
 use crate::stages::{Footprint, GpuScene, ReflectionRecord, View};
 
@@ -117,8 +115,7 @@ impl ReflectionMethod for PlanarMirror {
             if view.camera.eye().dot(normal) < offset {
                 (normal, offset) = (-normal, -offset);
             }
-            let uniform =
-                PlaneUniform { normal: normal.to_array(), offset, object, pad: [0; 3] };
+            let uniform = PlaneUniform { normal: normal.to_array(), offset, object, pad: [0; 3] };
             let pass = frame.pass("planar-mirror/mirrored").graphics(&self.mirrored);
             let pass = record.attach(view.bind(scene.bind(pass)));
             let depth = Load::Clear([0.0; 4]);

@@ -58,12 +58,7 @@ impl Footprint {
     }
 
     /// Draw it over the direct view's depth.
-    pub fn draw(
-        &self,
-        frame: &mut Frame,
-        scene: &GpuScene,
-        camera: &CameraUniform,
-    ) -> Result<()> {
+    pub fn draw(&self, frame: &mut Frame, scene: &GpuScene, camera: &CameraUniform) -> Result<()> {
         let pass = frame.pass("footprint/surfaces").graphics(&self.surfaces);
         scene
             .bind(pass)

@@ -29,12 +29,8 @@ impl RecordMode {
 
     /// Formats of the record's images as colour attachments, in the order of `@location`s.
     pub fn formats(self) -> &'static [Format] {
-        const ALL: [Format; 4] = [
-            Format::Rgba16Float,
-            Format::Rgba32Float,
-            Format::Rgba32Float,
-            Format::Rgba32Uint,
-        ];
+        const ALL: [Format; 4] =
+            [Format::Rgba16Float, Format::Rgba32Float, Format::Rgba32Float, Format::Rgba32Uint];
         match self {
             RecordMode::Radiance => &ALL[..1],
             RecordMode::Full => &ALL,

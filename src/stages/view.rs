@@ -1,6 +1,7 @@
 //! One view: what a method is given besides the scene.
 
 use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
 
 use super::{DirectView, Footprint};
 use crate::error::Result;
@@ -24,6 +25,11 @@ pub struct CameraUniform {
 }
 
 impl CameraUniform {
+    /// World position of the eye.
+    pub fn eye(&self) -> Vec3 {
+        Vec3::from_array(self.eye)
+    }
+
     /// The camera for an image of `size` pixels.
     pub fn new(camera: &Camera, size: [u32; 2]) -> CameraUniform {
         let [right, up, back] = camera.axes();
