@@ -7,7 +7,7 @@ use toml::Spanned;
 
 use super::camera;
 use super::format::{
-    EnvironmentFile, KeyFile, LightingFile, MaterialFile, ObjectFile, SceneFile, Span,
+    EnvironmentFile, KeyFile, LightingFile, MaterialFile, ObjectFile, SceneFile, ShapeFile, Span,
 };
 use super::image::decode;
 use super::parts::{PartMaterial, parts};
@@ -164,12 +164,23 @@ impl Builder {
         defined: &BTreeMap<String, Spanned<MaterialFile>>,
     ) -> Result<()> {
         let group = self.object_name(&file.name)?;
+        if let (ShapeFile::Obj(obj), Some(own)) = (file.shape.get_ref(), &file.material) {
+            if !obj.materials.is_empty() {
+                let message = "both `material` and `materials`; valid: one of the two";
+                return Err(self.source.error(&own.span(), message));
+            }
+        }
         let motion = self.motion(file)?;
         for part in self.make(file)? {
             let name = match &part.name {
                 Some(part) => format!("{group}.{}", part.replace(|c| !is_name_character(c), "-")),
                 None => group.clone(),
             };
+            if self.objects.iter().any(|object| object.name == name) {
+                let message =
+                    format!("a second object `{name}`; valid: a name of its own for each");
+                return Err(self.source.error(&file.name.span(), message));
+            }
             let material = self.part_material(file, part.material, defined)?;
             self.objects.push(Object {
                 name,
@@ -190,7 +201,7 @@ impl Builder {
         if text.is_empty() || !text.chars().all(is_name_character) {
             return fail(format!("object name `{text}`; valid: letters, digits, `-`, `_` and `.`"));
         }
-        if self.objects.iter().any(|object| object.group == *text || object.name == *text) {
+        if self.objects.iter().any(|object| object.group == *text) {
             return fail(format!("a second object `{text}`; valid: a name of its own for each"));
         }
         Ok(text.clone())
@@ -200,7 +211,7 @@ impl Builder {
     fn make(&mut self, file: &ObjectFile) -> Result<Vec<MadePart>> {
         let scale = file.scale.map_or(1.0, |s| s.0);
         let shape = file.shape.get_ref();
-        let key = format!("{scale} {shape:?}");
+        let key = format!("{scale} {}", &self.source.text()[file.shape.span()]);
         if let Some(made) = self.made.get(&key) {
             return Ok(made.clone());
         }

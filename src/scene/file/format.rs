@@ -198,7 +198,7 @@ pub struct KeyFile {
     pub rotation_deg: Option<Triple>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "snake_case")]
 pub enum ShapeFile {
     Sphere(SphereFile),
@@ -212,7 +212,7 @@ pub enum ShapeFile {
     Patches(PatchesFile),
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SphereFile {
     pub radius: Positive,
@@ -221,7 +221,7 @@ pub struct SphereFile {
     pub stacks: Option<Stacks>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EllipsoidFile {
     pub radii: [Positive; 3],
@@ -230,19 +230,19 @@ pub struct EllipsoidFile {
     pub stacks: Option<Stacks>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BoxFile {
     pub size: [Positive; 3],
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneFile {
     pub size: [Positive; 2],
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CylinderFile {
     pub radius: Positive,
@@ -257,7 +257,7 @@ fn yes() -> bool {
     true
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TorusFile {
     pub ring: Positive,
@@ -273,7 +273,7 @@ fn full_turn() -> Turn {
     Turn(360.0)
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RevolutionFile {
     /// (radius, height) from the bottom to the top where the outside is away from the axis.
@@ -284,14 +284,14 @@ pub struct RevolutionFile {
     pub stacks: Option<Stacks>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CurveKind {
     Polyline,
     Bezier,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjFile {
     pub file: Spanned<String>,
@@ -306,7 +306,7 @@ fn forty() -> Crease {
     Crease(40.0)
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PatchesFile {
     pub file: Spanned<String>,
