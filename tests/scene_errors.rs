@@ -249,6 +249,8 @@ fn bad_assets_are_named_with_their_line() {
         ("a.obj", triangle("f 1 2 x"), "a.obj:4: `x` is not an index"),
         ("a.obj", triangle("f 1 2"), "a.obj:4: a face of 2 corners; valid: 3 or more"),
         ("a.obj", triangle("f 1 2 2"), "a.obj:4: a face without area; valid: corners that are not on one line"),
+        ("a.obj", triangle("vn 0 0 1\nf 1 2 3\nf 1//1 2//1 3//1"), "a.obj:6: normals on some faces only; valid: on all faces or on none"),
+        ("a.obj", triangle("vn 0 0 1\nf 1 2//1 3//1"), "a.obj:5: normals on some corners only; valid: on all corners or on none"),
         ("a.obj", triangle("vn 0 0 0"), "a.obj:4: a normal of length 0; valid: any other length"),
         ("a.obj", triangle("mtllib no.mtl"), "a.obj:4: no material library `no.mtl` beside it"),
         ("a.obj", TRIANGLE.to_owned(), "a.obj: no triangles; valid: at least one face"),

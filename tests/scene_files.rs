@@ -232,3 +232,47 @@ fn diffuse_colours_of_mesh_files_become_materials() {
     let glass = only(&kitchen, "bottle.bottle_glass_green");
     assert_eq!(kitchen.material_of(glass).pattern, Pattern::Colour(Vec3::new(0.0, 0.16, 0.0)));
 }
+
+#[test]
+fn an_obj_file_gives_an_object_a_material() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    // A quad of iron and a triangle of steel, corners counted from the end. The normal is not named.
+    let obj = "mtllib a.mtl\nv 0 0 0\nv 2 0 0\nv 2 0 -2\nv 0 0 -2\nvn 0 3 4\nusemtl Iron\n\
+               f 1 2 3 4\nvt 0.5 0.25\nusemtl Blue steel\nf -4/-1 -3/-1 -2/-1\n";
+    write("a.obj", obj);
+    write("a.mtl", "newmtl Iron\nKd 0.5 0.25 0\nnewmtl Blue steel\nKd 0 0 1\n");
+    let text = r#"about = "test"
+camera = { fov_deg = 60, eye = [0, 1, 4], target = [0, 0, 0] }
+environment = { colour = [1, 1, 1] }
+materials.mirror = { mirror = { reflectance = 0.5 } }
+[[objects]]
+name = "part"
+shape = { obj = { file = "a.obj", materials = { "Blue steel" = "mirror" } } }
+scale = 0.5
+"#;
+    write("test.toml", text);
+    let path = folder.path().join("test.toml");
+    let scene = scene::load(path.to_str().unwrap()).unwrap();
+    let names: Vec<&str> = scene.objects.iter().map(|object| object.name.as_str()).collect();
+    assert_eq!(names, ["part.Blue-steel", "part.Iron"]);
+    assert!(scene.is_reflector(0) && !scene.is_reflector(1));
+    assert_eq!(scene.material_of(1).pattern, Pattern::Colour(Vec3::new(0.5, 0.25, 0.0)));
+    let [steel, iron] = [0, 1].map(|object| scene.mesh_of(object));
+    assert_eq!((steel.triangles.len(), iron.triangles.len()), (1, 2));
+    assert!(steel.uvs.iter().all(|&uv| uv == Vec2::new(0.5, 0.25)));
+    assert!(iron.normals.iter().all(|n| n.abs_diff_eq(Vec3::Y, 1e-6)));
+    assert_eq!(iron.bounds(), Some((Vec3::new(0.0, 0.0, -1.0), Vec3::new(1.0, 0.0, 0.0))));
+
+    // Normals that faces name are kept.
+    write("a.obj", &obj.replace("f 1 2 3 4", "f 1//1 2//1 3//1 4//1").replace("/-1", "/-1/1"));
+    let with_normals = scene::load(path.to_str().unwrap()).unwrap();
+    for normal in with_normals.meshes.iter().flat_map(|mesh| &mesh.normals) {
+        assert!(normal.abs_diff_eq(Vec3::new(0.0, 0.6, 0.8), 1e-6));
+    }
+    write("a.obj", obj);
+
+    // The hash covers the assets too.
+    write("a.mtl", "newmtl Iron\nKd 0.5 0.5 0\nnewmtl Blue steel\nKd 0 0 1\n");
+    assert_ne!(scene.hash, scene::load(path.to_str().unwrap()).unwrap().hash);
+}

@@ -52,7 +52,8 @@ pub fn environment(scene: &Scene, direction: Vec3) -> Vec3 {
     }
 }
 
-/// Image coordinates of a unit direction in a latitude-longitude image: -z in the middle, +y on top.
+/// Image coordinates of a unit direction in a latitude-longitude image: -z in the middle, +y on
+/// top.
 pub fn lat_long(direction: Vec3) -> Vec2 {
     let u = 0.5 + direction.x.atan2(-direction.z) / TAU;
     let v = direction.y.clamp(-1.0, 1.0).acos() / PI;

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use glam::{Affine3A, EulerRot, Quat, Vec2, Vec3};
+use half::f16;
 use toml::Spanned;
 
 use super::camera;
@@ -12,7 +13,7 @@ use super::format::{
 use super::image::decode;
 use super::parts::{PartMaterial, parts};
 use super::source::Source;
-use super::values::{Triple, colour, triple};
+use super::values::{Positive, Triple, colour, triple};
 use crate::error::Result;
 use crate::scene::{
     Environment, Image, Lighting, Material, Mirror, Motion, Object, Pattern, Scene, Surface,
@@ -113,49 +114,47 @@ impl Builder {
     }
 
     fn material(&mut self, name: &str, file: &Spanned<MaterialFile>) -> Result<Material> {
-        let (span, file) = (file.span(), file.get_ref());
         let mirror = file
+            .get_ref()
             .mirror
             .as_ref()
             .map(|mirror| Mirror { reflectance: mirror.reflectance.0, tint: colour(mirror.tint) });
-        let mut patterns = Vec::new();
-        if let Some(one) = file.colour {
-            patterns.push(Pattern::Colour(colour(one)));
-        }
-        if let Some(checker) = &file.checker {
-            let size = Vec2::from(checker.size.map(|s| s.0));
-            patterns.push(Pattern::Checker {
-                even: colour(checker.even),
-                odd: colour(checker.odd),
-                size,
-            });
-        }
-        if let Some(grid) = &file.grid {
-            patterns.push(Pattern::Grid {
-                ground: colour(grid.ground),
-                lines: colour(grid.lines),
-                size: Vec2::from(grid.size.map(|s| s.0)),
-                line: grid.line.0,
-            });
-        }
-        if let Some(image) = &file.image {
-            let size = Vec2::from(image.size.map(|s| s.0));
-            patterns.push(Pattern::Image {
-                image: self.image(&image.file, f32::from(half::f16::MAX))?,
-                size,
-            });
-        }
+        let mut patterns = self.patterns(file.get_ref())?;
         let pattern = match (patterns.pop(), mirror) {
             (Some(pattern), _) if patterns.is_empty() => pattern,
             (None, Some(_)) => Pattern::Colour(Vec3::ZERO),
             _ => {
                 let message = format!(
-                    "material `{name}` needs one look; valid: one of colour, checker, grid, image, or mirror alone"
+                    "material `{name}` needs one look; \
+                     valid: one of colour, checker, grid, image, or mirror alone"
                 );
-                return Err(self.source.error(&span, message));
+                return Err(self.source.error(&file.span(), message));
             }
         };
         Ok(Material { name: name.to_owned(), pattern, mirror })
+    }
+
+    /// The diffuse looks a material names.
+    fn patterns(&mut self, file: &MaterialFile) -> Result<Vec<Pattern>> {
+        let size = |size: [Positive; 2]| Vec2::from(size.map(|s| s.0));
+        let mut patterns = Vec::new();
+        patterns.extend(file.colour.map(|one| Pattern::Colour(colour(one))));
+        patterns.extend(file.checker.as_ref().map(|checker| Pattern::Checker {
+            even: colour(checker.even),
+            odd: colour(checker.odd),
+            size: size(checker.size),
+        }));
+        patterns.extend(file.grid.as_ref().map(|grid| Pattern::Grid {
+            ground: colour(grid.ground),
+            lines: colour(grid.lines),
+            size: size(grid.size),
+            line: grid.line.0,
+        }));
+        if let Some(file) = &file.image {
+            let image = self.image(&file.file, f16::MAX.to_f32())?;
+            patterns.push(Pattern::Image { image, size: size(file.size) });
+        }
+        Ok(patterns)
     }
 
     fn object(

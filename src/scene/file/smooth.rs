@@ -29,10 +29,10 @@ fn bits(v: Vec3) -> [u32; 3] {
 
 /// The mesh of `triangles`, without those that have no area.
 ///
-/// A corner without a normal gets the mean of the normals of the faces around its position, weighted
-/// by their angles there; faces turned away by more than `crease` (radians, below a quarter turn)
-/// do not count, so that edges stay sharp. Angle weights make the result independent of how faces were
-/// cut into triangles (Thürmer & Wüthrich 1998).
+/// A corner without a normal gets the mean of the normals of the faces around its position,
+/// weighted by their angles there; faces turned away by more than `crease` (radians, below a quarter
+/// turn) do not count, so that edges stay sharp. Angle weights make the result independent of how
+/// faces were cut into triangles (Thürmer & Wüthrich 1998).
 pub fn smoothed(triangles: &[[Corner; 3]], crease: f32) -> Mesh {
     let solid: Vec<&[Corner; 3]> =
         triangles.iter().filter(|[a, b, c]| !is_flat(a.position, b.position, c.position)).collect();
