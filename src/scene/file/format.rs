@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use serde::de::IgnoredAny;
 use toml::Spanned;
 
 use super::values::{
@@ -50,13 +49,10 @@ fn four_bounces() -> Whole<1, 16> {
     Whole(4)
 }
 
-/// The one line of a scene file that `list scenes` shows.
+/// The one line of a scene file that `list scenes` shows; the rest is left to the loader.
 #[derive(Deserialize)]
 pub struct AboutFile {
     pub about: String,
-    /// Everything else, left to the loader.
-    #[serde(flatten)]
-    _rest: BTreeMap<String, IgnoredAny>,
 }
 
 #[derive(Deserialize)]
