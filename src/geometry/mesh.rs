@@ -39,26 +39,6 @@ impl Mesh {
         self
     }
 
-    /// The mesh seen from its other side: normals and winding turned.
-    pub fn flipped(mut self) -> Mesh {
-        for normal in &mut self.normals {
-            *normal = -*normal;
-        }
-        for [_, b, c] in &mut self.triangles {
-            std::mem::swap(b, c);
-        }
-        self
-    }
-
-    /// Appends another mesh.
-    pub fn append(&mut self, other: Mesh) {
-        let first = self.positions.len() as u32;
-        self.positions.extend(other.positions);
-        self.normals.extend(other.normals);
-        self.uvs.extend(other.uvs);
-        self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| first + i)));
-    }
-
     /// Appends `columns * rows` quads over a grid of `(columns + 1) * (rows + 1)` vertices, split
     /// into triangles that are counter-clockwise when the vertex moves right with the column
     /// and up with the row. Where neighbouring vertices coincide, as at the pole of a sphere, the

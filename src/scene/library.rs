@@ -11,8 +11,8 @@ pub const SCENES_VARIABLE: &str = "MIRRORBENCH_SCENES";
 /// Loads a scene: a name under the scenes folder, or a path to a `.toml` file anywhere.
 ///
 /// # Errors
-/// [`Error::Usage`] for an unknown name, with the valid ones; [`Error::Scene`] for a file that cannot
-/// be read, an unknown key, a value out of range or a bad asset, with file and line.
+/// [`Error::Usage`] for an unknown name, with the valid ones; [`Error::Scene`] for a file that
+/// cannot be read, an unknown key, a value out of range or a bad asset, with file and line.
 pub fn load(name_or_path: &str) -> Result<Scene> {
     let path = Path::new(name_or_path);
     if path.extension().is_some_and(|extension| extension == "toml") {
@@ -39,8 +39,8 @@ pub fn list() -> Result<Vec<(String, String)>> {
     names(&folder)?.into_iter().map(about).collect()
 }
 
-/// The folder of the shipped scenes: `$MIRRORBENCH_SCENES`, else the first `scenes` folder at or above
-/// the current directory, at or above the executable, or in the source tree it was built from.
+/// The folder of the shipped scenes: `$MIRRORBENCH_SCENES`, else the first `scenes` folder at or
+/// above the current directory, at or above the executable, or in the source tree it was built from.
 pub fn scenes_dir() -> Result<PathBuf> {
     if let Some(named) = std::env::var_os(SCENES_VARIABLE) {
         let named = PathBuf::from(named);

@@ -29,8 +29,8 @@ pub enum Pattern {
         size: Vec2,
         line: f32,
     },
-    /// Index into [`crate::scene::Scene::images`]; one image covers `size` texture coordinate units,
-    /// its lower left corner at the origin.
+    /// Index into [`crate::scene::Scene::images`]; one image covers `size` texture coordinate
+    /// units, its lower left corner at the origin.
     Image {
         image: usize,
         size: Vec2,

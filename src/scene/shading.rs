@@ -52,7 +52,8 @@ pub fn environment(scene: &Scene, direction: Vec3) -> Vec3 {
     }
 }
 
-/// Image coordinates of a unit direction in a latitude-longitude image: -z in the middle, +y on top.
+/// Image coordinates of a unit direction in a latitude-longitude image: -z in the middle, +y on
+/// top.
 pub fn lat_long(direction: Vec3) -> Vec2 {
     let u = 0.5 + direction.x.atan2(-direction.z) / TAU;
     let v = direction.y.clamp(-1.0, 1.0).acos() / PI;
@@ -84,4 +85,158 @@ pub fn bilinear(image: &Image, uv: Vec2, rows: Edge) -> Vec3 {
     let upper = texel(x, y) * (1.0 - f.x) + texel(x + 1, y) * f.x;
     let lower = texel(x, y + 1) * (1.0 - f.x) + texel(x + 1, y + 1) * f.x;
     upper * (1.0 - f.y) + lower * f.y
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Camera, Mesh, Projection};
+    use crate::scene::{CameraPath, Lighting, Motion, Object};
+    use glam::Affine3A;
+
+    /// One object of one material under one environment.
+    fn scene(pattern: Pattern, environment: Environment, images: Vec<Image>) -> Scene {
+        let projection = Projection::Perspective { fov_y: 1.0 };
+        let (eye, target, up) = (Vec3::Z, Vec3::ZERO, Vec3::Y);
+        let camera = Camera { eye, target, up, projection, near: 0.1, far: 1.0 };
+        Scene {
+            name: "test".to_owned(),
+            about: String::new(),
+            hash: String::new(),
+            frames: 1,
+            rate_hz: 24.0,
+            camera: CameraPath::Keys(vec![(0.0, camera)]),
+            objects: vec![Object {
+                name: "one".to_owned(),
+                group: "one".to_owned(),
+                mesh: 0,
+                material: 0,
+                surface: None,
+                motion: Motion::Still(Affine3A::IDENTITY),
+            }],
+            meshes: vec![Mesh::default()],
+            materials: vec![Material { name: "only".to_owned(), pattern, mirror: None }],
+            images,
+            environment,
+            lighting: Lighting {
+                ambient: Vec3::splat(0.25),
+                towards_sun: Vec3::Y,
+                sun: Vec3::new(1.0, 0.5, 0.0),
+            },
+            bounces: 1,
+        }
+    }
+
+    fn albedo_at(scene: &Scene, u: f32, v: f32) -> Vec3 {
+        albedo(scene, &scene.materials[0], Vec2::new(u, v))
+    }
+
+    const BLACK: Environment = Environment::Colour(Vec3::ZERO);
+
+    #[test]
+    fn light_is_ambient_plus_the_cosine_to_the_sun() {
+        let scene = scene(Pattern::Colour(Vec3::splat(0.5)), BLACK, vec![]);
+        let slanted = Vec3::new(0.8, 0.6, 0.0);
+        let at = |normal| shade(&scene, 0, normal, Vec2::ZERO);
+        assert!(at(slanted).abs_diff_eq(0.5 * Vec3::new(0.85, 0.55, 0.25), 1e-6));
+        assert_eq!(at(Vec3::NEG_Y), Vec3::splat(0.125), "no light from behind");
+    }
+
+    #[test]
+    fn checkers_change_colour_at_every_edge_also_below_zero() {
+        let checker = Pattern::Checker { even: Vec3::X, odd: Vec3::Y, size: Vec2::new(0.5, 2.0) };
+        let scene = scene(checker, BLACK, vec![]);
+        for (u, v, expected) in [
+            (0.1, 0.1, Vec3::X),
+            (0.6, 0.1, Vec3::Y),
+            (0.6, 2.1, Vec3::X),
+            (-0.1, 0.1, Vec3::Y),
+            (-0.1, -0.1, Vec3::X),
+            (-0.6, 0.1, Vec3::X),
+        ] {
+            assert_eq!(albedo_at(&scene, u, v), expected, "at ({u}, {v})");
+        }
+    }
+
+    #[test]
+    fn grid_lines_are_centred_on_the_multiples_of_the_size() {
+        let size = Vec2::new(1.0, 0.5);
+        let grid = Pattern::Grid { ground: Vec3::X, lines: Vec3::Y, size, line: 0.1 };
+        let scene = scene(grid, BLACK, vec![]);
+        for (u, v, expected) in [
+            (0.5, 0.25, Vec3::X),
+            (0.96, 0.25, Vec3::Y),
+            (1.04, 0.25, Vec3::Y),
+            (1.06, 0.25, Vec3::X),
+            (-0.96, 0.25, Vec3::Y),
+            (0.5, 0.54, Vec3::Y),
+            (0.5, 0.56, Vec3::X),
+        ] {
+            assert_eq!(albedo_at(&scene, u, v), expected, "at ({u}, {v})");
+        }
+    }
+
+    /// Two by two texels: 1 2 above 3 4.
+    fn four() -> Image {
+        Image { width: 2, height: 2, texels: [1.0, 2.0, 3.0, 4.0].map(Vec3::splat).to_vec() }
+    }
+
+    #[test]
+    fn images_stand_upright_are_filtered_and_repeat() {
+        let image = Pattern::Image { image: 0, size: Vec2::new(4.0, 2.0) };
+        let scene = scene(image, BLACK, vec![four()]);
+        for (u, v, expected) in [
+            (1.0, 1.5, 1.0),
+            (3.0, 1.5, 2.0),
+            (1.0, 0.5, 3.0),
+            (3.0, 0.5, 4.0),
+            (2.0, 1.5, 1.5),
+            (2.0, 1.0, 2.5),
+            (0.0, 1.5, 1.5),
+            (1.0, 2.0, 2.0),
+            (-1.0, 3.5, 2.0),
+        ] {
+            assert!((albedo_at(&scene, u, v).x - expected).abs() < 1e-6, "at ({u}, {v})");
+        }
+    }
+
+    #[test]
+    fn clamped_rows_hold_at_top_and_bottom_while_columns_wrap() {
+        let image = four();
+        let at = |u, v| bilinear(&image, Vec2::new(u, v), Edge::Clamp).x;
+        assert_eq!((at(0.25, 0.0), at(0.75, 1.0)), (1.0, 4.0));
+        assert_eq!((at(0.0, 0.25), at(1.0, 0.25)), (1.5, 1.5));
+    }
+
+    #[test]
+    fn latitude_and_longitude_have_minus_z_in_the_middle() {
+        for (direction, u, v) in [
+            (Vec3::NEG_Z, 0.5, 0.5),
+            (Vec3::X, 0.75, 0.5),
+            (Vec3::NEG_X, 0.25, 0.5),
+            (Vec3::new(0.0, 0.5f32.sqrt(), -(0.5f32.sqrt())), 0.5, 0.25),
+        ] {
+            assert!(lat_long(direction).abs_diff_eq(Vec2::new(u, v), 1e-6), "{direction}");
+        }
+        assert_eq!(lat_long(Vec3::Y).y, 0.0);
+        assert_eq!(lat_long(Vec3::NEG_Y).y, 1.0);
+        let sky =
+            scene(Pattern::Colour(Vec3::ZERO), Environment::LatLong { image: 0 }, vec![four()]);
+        assert!((environment(&sky, Vec3::NEG_Z).x - 2.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn gradients_pass_through_their_three_colours() {
+        let gradient = Environment::Gradient { zenith: Vec3::X, horizon: Vec3::Y, nadir: Vec3::Z };
+        let scene = scene(Pattern::Colour(Vec3::ZERO), gradient, vec![]);
+        for (direction, expected) in [
+            (Vec3::Y, Vec3::X),
+            (Vec3::X, Vec3::Y),
+            (Vec3::NEG_Y, Vec3::Z),
+            (Vec3::new(0.8, 0.6, 0.0), Vec3::new(0.6, 0.4, 0.0)),
+            (Vec3::new(0.8, -0.6, 0.0), Vec3::new(0.0, 0.4, 0.6)),
+        ] {
+            assert!(environment(&scene, direction).abs_diff_eq(expected, 1e-6), "{direction}");
+        }
+    }
 }

@@ -3,16 +3,17 @@
 use std::collections::{BTreeMap, HashMap};
 
 use glam::{Affine3A, EulerRot, Quat, Vec2, Vec3};
+use half::f16;
 use toml::Spanned;
 
 use super::camera;
 use super::format::{
-    EnvironmentFile, KeyFile, LightingFile, MaterialFile, ObjectFile, SceneFile, Span,
+    EnvironmentFile, KeyFile, LightingFile, MaterialFile, ObjectFile, SceneFile, ShapeFile, Span,
 };
 use super::image::decode;
 use super::parts::{PartMaterial, parts};
 use super::source::Source;
-use super::values::{Triple, colour, triple};
+use super::values::{Positive, Triple, colour, triple};
 use crate::error::Result;
 use crate::scene::{
     Environment, Image, Lighting, Material, Mirror, Motion, Object, Pattern, Scene, Surface,
@@ -113,49 +114,47 @@ impl Builder {
     }
 
     fn material(&mut self, name: &str, file: &Spanned<MaterialFile>) -> Result<Material> {
-        let (span, file) = (file.span(), file.get_ref());
         let mirror = file
+            .get_ref()
             .mirror
             .as_ref()
             .map(|mirror| Mirror { reflectance: mirror.reflectance.0, tint: colour(mirror.tint) });
-        let mut patterns = Vec::new();
-        if let Some(one) = file.colour {
-            patterns.push(Pattern::Colour(colour(one)));
-        }
-        if let Some(checker) = &file.checker {
-            let size = Vec2::from(checker.size.map(|s| s.0));
-            patterns.push(Pattern::Checker {
-                even: colour(checker.even),
-                odd: colour(checker.odd),
-                size,
-            });
-        }
-        if let Some(grid) = &file.grid {
-            patterns.push(Pattern::Grid {
-                ground: colour(grid.ground),
-                lines: colour(grid.lines),
-                size: Vec2::from(grid.size.map(|s| s.0)),
-                line: grid.line.0,
-            });
-        }
-        if let Some(image) = &file.image {
-            let size = Vec2::from(image.size.map(|s| s.0));
-            patterns.push(Pattern::Image {
-                image: self.image(&image.file, f32::from(half::f16::MAX))?,
-                size,
-            });
-        }
+        let mut patterns = self.patterns(file.get_ref())?;
         let pattern = match (patterns.pop(), mirror) {
             (Some(pattern), _) if patterns.is_empty() => pattern,
             (None, Some(_)) => Pattern::Colour(Vec3::ZERO),
             _ => {
                 let message = format!(
-                    "material `{name}` needs one look; valid: one of colour, checker, grid, image, or mirror alone"
+                    "material `{name}` needs one look; \
+                     valid: one of colour, checker, grid, image, or mirror alone"
                 );
-                return Err(self.source.error(&span, message));
+                return Err(self.source.error(&file.span(), message));
             }
         };
         Ok(Material { name: name.to_owned(), pattern, mirror })
+    }
+
+    /// The diffuse looks a material names.
+    fn patterns(&mut self, file: &MaterialFile) -> Result<Vec<Pattern>> {
+        let size = |size: [Positive; 2]| Vec2::from(size.map(|s| s.0));
+        let mut patterns = Vec::new();
+        patterns.extend(file.colour.map(|one| Pattern::Colour(colour(one))));
+        patterns.extend(file.checker.as_ref().map(|checker| Pattern::Checker {
+            even: colour(checker.even),
+            odd: colour(checker.odd),
+            size: size(checker.size),
+        }));
+        patterns.extend(file.grid.as_ref().map(|grid| Pattern::Grid {
+            ground: colour(grid.ground),
+            lines: colour(grid.lines),
+            size: size(grid.size),
+            line: grid.line.0,
+        }));
+        if let Some(file) = &file.image {
+            let image = self.image(&file.file, f16::MAX.to_f32())?;
+            patterns.push(Pattern::Image { image, size: size(file.size) });
+        }
+        Ok(patterns)
     }
 
     fn object(
@@ -164,12 +163,23 @@ impl Builder {
         defined: &BTreeMap<String, Spanned<MaterialFile>>,
     ) -> Result<()> {
         let group = self.object_name(&file.name)?;
+        if let (ShapeFile::Obj(obj), Some(own)) = (file.shape.get_ref(), &file.material) {
+            if !obj.materials.is_empty() {
+                let message = "both `material` and `materials`; valid: one of the two";
+                return Err(self.source.error(&own.span(), message));
+            }
+        }
         let motion = self.motion(file)?;
         for part in self.make(file)? {
             let name = match &part.name {
                 Some(part) => format!("{group}.{}", part.replace(|c| !is_name_character(c), "-")),
                 None => group.clone(),
             };
+            if self.objects.iter().any(|object| object.name == name) {
+                let message =
+                    format!("a second object `{name}`; valid: a name of its own for each");
+                return Err(self.source.error(&file.name.span(), message));
+            }
             let material = self.part_material(file, part.material, defined)?;
             self.objects.push(Object {
                 name,
@@ -190,7 +200,7 @@ impl Builder {
         if text.is_empty() || !text.chars().all(is_name_character) {
             return fail(format!("object name `{text}`; valid: letters, digits, `-`, `_` and `.`"));
         }
-        if self.objects.iter().any(|object| object.group == *text || object.name == *text) {
+        if self.objects.iter().any(|object| object.group == *text) {
             return fail(format!("a second object `{text}`; valid: a name of its own for each"));
         }
         Ok(text.clone())
@@ -200,7 +210,7 @@ impl Builder {
     fn make(&mut self, file: &ObjectFile) -> Result<Vec<MadePart>> {
         let scale = file.scale.map_or(1.0, |s| s.0);
         let shape = file.shape.get_ref();
-        let key = format!("{scale} {shape:?}");
+        let key = format!("{scale} {}", &self.source.text()[file.shape.span()]);
         if let Some(made) = self.made.get(&key) {
             return Ok(made.clone());
         }

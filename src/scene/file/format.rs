@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use serde::de::IgnoredAny;
 use toml::Spanned;
 
 use super::values::{
@@ -50,13 +49,10 @@ fn four_bounces() -> Whole<1, 16> {
     Whole(4)
 }
 
-/// The one line of a scene file that `list scenes` shows.
+/// The one line of a scene file that `list scenes` shows; the rest is left to the loader.
 #[derive(Deserialize)]
 pub struct AboutFile {
     pub about: String,
-    /// Everything else, left to the loader.
-    #[serde(flatten)]
-    _rest: BTreeMap<String, IgnoredAny>,
 }
 
 #[derive(Deserialize)]
@@ -198,7 +194,7 @@ pub struct KeyFile {
     pub rotation_deg: Option<Triple>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "snake_case")]
 pub enum ShapeFile {
     Sphere(SphereFile),
@@ -212,7 +208,7 @@ pub enum ShapeFile {
     Patches(PatchesFile),
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SphereFile {
     pub radius: Positive,
@@ -221,7 +217,7 @@ pub struct SphereFile {
     pub stacks: Option<Stacks>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EllipsoidFile {
     pub radii: [Positive; 3],
@@ -230,19 +226,19 @@ pub struct EllipsoidFile {
     pub stacks: Option<Stacks>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BoxFile {
     pub size: [Positive; 3],
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneFile {
     pub size: [Positive; 2],
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CylinderFile {
     pub radius: Positive,
@@ -257,7 +253,7 @@ fn yes() -> bool {
     true
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TorusFile {
     pub ring: Positive,
@@ -273,7 +269,7 @@ fn full_turn() -> Turn {
     Turn(360.0)
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RevolutionFile {
     /// (radius, height) from the bottom to the top where the outside is away from the axis.
@@ -284,14 +280,14 @@ pub struct RevolutionFile {
     pub stacks: Option<Stacks>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CurveKind {
     Polyline,
     Bezier,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjFile {
     pub file: Spanned<String>,
@@ -306,7 +302,7 @@ fn forty() -> Crease {
     Crease(40.0)
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PatchesFile {
     pub file: Spanned<String>,

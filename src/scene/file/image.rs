@@ -10,7 +10,8 @@ use super::source::Asset;
 use crate::error::Result;
 use crate::scene::Image;
 
-/// Decodes an image by its file's ending. Negative values become 0, values above `cap` become `cap`.
+/// Decodes an image by its file's ending. Negative values become 0, values above `cap` become
+/// `cap`.
 pub fn decode(asset: &Asset, cap: f32) -> Result<Image> {
     match asset.path.extension().and_then(|e| e.to_str()) {
         Some("png") => decode_png(asset, cap),
@@ -66,4 +67,49 @@ fn rounded(width: u32, height: u32, texels: Vec<Vec3>, cap: f32) -> Image {
     let round = |value: f32| f16::from_f32(value.max(0.0).min(cap)).to_f32();
     let texels = texels.into_iter().map(|texel| Vec3::from(texel.to_array().map(round))).collect();
     Image { width, height, texels }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::PathBuf;
+
+    fn png(colour: png::ColorType, bytes: &[u8]) -> Asset {
+        let mut file = Vec::new();
+        let width = (bytes.len() / colour.samples()) as u32;
+        let mut encoder = png::Encoder::new(&mut file, width, 1);
+        encoder.set_color(colour);
+        encoder.write_header().unwrap().write_image_data(bytes).unwrap();
+        Asset { path: PathBuf::from("test.png"), bytes: file }
+    }
+
+    #[test]
+    fn png_files_are_made_linear() {
+        let image = decode(&png(png::ColorType::Rgb, &[0, 128, 255, 10, 10, 10]), 10.0).unwrap();
+        assert_eq!((image.width, image.height), (2, 1));
+        // Byte 128 is 0.2158605 linear; 10 lies on the straight part: 10 / 255 / 12.92.
+        assert!(image.texels[0].abs_diff_eq(Vec3::new(0.0, 0.215_860_5, 1.0), 1e-4));
+        assert!(image.texels[1].abs_diff_eq(Vec3::splat(0.003_035_3), 1e-5));
+    }
+
+    #[test]
+    fn grey_and_transparent_png_files_are_read() {
+        let grey = decode(&png(png::ColorType::GrayscaleAlpha, &[255, 7]), 10.0).unwrap();
+        assert_eq!(grey.texels, [Vec3::ONE]);
+        let rgba = decode(&png(png::ColorType::Rgba, &[255, 0, 255, 7]), 10.0).unwrap();
+        assert_eq!(rgba.texels, [Vec3::new(1.0, 0.0, 1.0)]);
+    }
+
+    #[test]
+    fn exr_files_are_clamped_and_rounded_to_half() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("test.exr");
+        let texels = [(-1.0, f32::NAN, 0.1), (1e6, f32::INFINITY, 2.0)];
+        exr::prelude::write_rgb_file(&path, 2, 1, |x, _| texels[x]).unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        let image = decode(&Asset { path, bytes }, 16.0).unwrap();
+        let tenth = f16::from_f32(0.1).to_f32();
+        assert_ne!(tenth, 0.1);
+        assert_eq!(image.texels, [Vec3::new(0.0, 0.0, tenth), Vec3::new(16.0, 16.0, 2.0)]);
+    }
 }

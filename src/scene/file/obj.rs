@@ -29,7 +29,8 @@ pub fn read(source: &mut Source, request: &ObjFile) -> Result<Vec<ObjMesh>> {
     let span = request.file.span();
     let asset = source.asset(request.file.get_ref(), &span)?;
     let text = asset.text()?;
-    let libraries = read_libraries(source, request, &asset, &check(&asset, text)?)?;
+    let facts = check(&asset, text)?;
+    let libraries = read_libraries(source, request, &asset, &facts.libraries)?;
     let options = tobj::LoadOptions {
         triangulate: true,
         ignore_points: true,
@@ -46,7 +47,10 @@ pub fn read(source: &mut Source, request: &ObjFile) -> Result<Vec<ObjMesh>> {
 
     let mut corners: BTreeMap<Option<usize>, Vec<[Corner; 3]>> = BTreeMap::new();
     for model in &models {
-        corners.entry(model.mesh.material_id).or_default().extend(triangles(&model.mesh));
+        corners
+            .entry(model.mesh.material_id)
+            .or_default()
+            .extend(triangles(&model.mesh, facts.with_normals == Some(true)));
     }
     let crease = request.crease_deg.0.to_radians();
     let mut meshes = Vec::new();
@@ -86,14 +90,18 @@ fn read_libraries(
 }
 
 /// The corners of a tobj mesh's triangles.
-fn triangles(mesh: &tobj::Mesh) -> Vec<[Corner; 3]> {
+fn triangles(mesh: &tobj::Mesh, with_normals: bool) -> Vec<[Corner; 3]> {
     let point = |list: &[f32], index: u32| {
         let at = 3 * index as usize;
         Vec3::new(list[at], list[at + 1], list[at + 2])
     };
     let corner = |place: usize| Corner {
         position: point(&mesh.positions, mesh.indices[place]),
-        normal: mesh.normal_indices.get(place).map(|&i| point(&mesh.normals, i)),
+        normal: mesh
+            .normal_indices
+            .get(place)
+            .filter(|_| with_normals)
+            .map(|&i| point(&mesh.normals, i)),
         uv: mesh.texcoord_indices.get(place).map_or(Vec2::ZERO, |&i| {
             Vec2::new(mesh.texcoords[2 * i as usize], mesh.texcoords[2 * i as usize + 1])
         }),

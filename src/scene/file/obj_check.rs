@@ -13,14 +13,25 @@ struct Counts {
     normals: usize,
 }
 
-/// Checks every line; gives the names of the material libraries with their lines.
+/// What the loader needs to know beside what tobj tells it.
+#[derive(Default)]
+pub struct Facts {
+    /// Names of the material libraries with the lines they stand in.
+    pub libraries: Vec<(usize, String)>,
+    /// Whether faces name normals; `None` without faces. Where faces name none, tobj gives them the
+    /// first one of the file, which must not be used.
+    pub with_normals: Option<bool>,
+}
+
+/// Checks every line.
 ///
 /// # Errors
 /// [`crate::error::Error::Scene`] with file and line: a number missing, malformed or not finite, a
-/// face with an index out of range, with under three corners or without area.
-pub fn check(asset: &Asset, text: &str) -> Result<Vec<(usize, String)>> {
+/// face with an index out of range, with under three corners or without area, or normals on some
+/// faces only.
+pub fn check(asset: &Asset, text: &str) -> Result<Facts> {
     let mut counts = Counts::default();
-    let mut libraries = Vec::new();
+    let mut facts = Facts::default();
     for (line, content) in text.lines().enumerate() {
         let fail = |message: String| asset.error(Some(line + 1), message);
         let mut words = content.split_whitespace();
@@ -40,12 +51,18 @@ pub fn check(asset: &Asset, text: &str) -> Result<Vec<(usize, String)>> {
                 }
                 counts.normals += 1;
             }
-            Some("f") => check_face(words, &counts).map_err(fail)?,
-            Some("mtllib") => libraries.extend(words.map(|name| (line + 1, name.to_owned()))),
+            Some("f") => {
+                let with_normals = check_face(words, &counts).map_err(fail)?;
+                if *facts.with_normals.get_or_insert(with_normals) != with_normals {
+                    let message = "normals on some faces only; valid: on all faces or on none";
+                    return Err(fail(message.to_owned()));
+                }
+            }
+            Some("mtllib") => facts.libraries.extend(words.map(|name| (line + 1, name.to_owned()))),
             _ => {}
         }
     }
-    Ok(libraries)
+    Ok(facts)
 }
 
 /// The first `N` numbers of a line.
@@ -64,20 +81,24 @@ fn numbers<'a, const N: usize>(
     Ok(values)
 }
 
+/// Checks a face; gives whether its corners name normals.
 fn check_face<'a>(
     words: impl Iterator<Item = &'a str>,
     counts: &Counts,
-) -> std::result::Result<(), String> {
+) -> std::result::Result<bool, String> {
     let limits = [counts.positions.len(), counts.texture_coordinates, counts.normals];
     let mut corners = Vec::new();
+    let mut normals = 0;
     for word in words {
         for (place, (index, count)) in word.split('/').zip(limits).enumerate() {
             if place == 1 && index.is_empty() {
                 continue; // v//vn
             }
             let index = resolve(index, count)?;
-            if place == 0 {
-                corners.push(counts.positions[index]);
+            match place {
+                0 => corners.push(counts.positions[index]),
+                2 => normals += 1,
+                _ => {}
             }
         }
     }
@@ -89,7 +110,11 @@ fn check_face<'a>(
     if area.length() <= f32::EPSILON * longest {
         return Err("a face without area; valid: corners that are not on one line".to_owned());
     }
-    Ok(())
+    match normals {
+        0 => Ok(false),
+        all if all == corners.len() => Ok(true),
+        _ => Err("normals on some corners only; valid: on all corners or on none".to_owned()),
+    }
 }
 
 /// An index counted from 1, or from the end where negative, as one from 0.

@@ -132,7 +132,9 @@ fn torus_mesh(file: &TorusFile, steps: &Steps) -> Result<Mesh> {
             steps.error(format!("tube = {tube} is out of range; valid: below ring = {ring}"))
         );
     }
-    let angle = file.sweep_deg.0.to_radians().min(TAU);
+    // Exactly a full turn closes the surface.
+    let degrees = file.sweep_deg.0;
+    let angle = if degrees < 360.0 { degrees.to_radians() } else { TAU };
     let slices = steps.arc(ring + tube, angle, edge, file.slices.map(|s| s.0), SLICES)?;
     let stacks = steps.arc(tube, TAU, edge, file.stacks.map(|s| s.0), STACKS)?;
     Ok(torus(ring, tube, stacks, Sweep { slices, angle }))

@@ -53,6 +53,8 @@ impl Source {
             .replace("missing field", "missing key")
             .replace(", expected one of ", "; valid: ")
             .replace(", expected ", "; valid: ")
+            .replace("; valid: i64", "; valid: a whole number")
+            .replace("; valid: f64", "; valid: a number")
             .replace('\n', " ");
         self.error(&error.span().unwrap_or(0..0), message)
     }
