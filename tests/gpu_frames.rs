@@ -19,7 +19,7 @@ fn engine(device: &Arc<Device>, scene: &Scene, case: &str, size: [u32; 2]) -> En
         record: RecordMode::Full,
         fallback: Fallback::None,
         shader_dir: None,
-        dump: None,
+        dump: Some(("environment-map/*".into(), "/tmp/dump".into())),
         seed: 0,
     };
     Engine::new(device, scene, &case, &methods, &options).unwrap()

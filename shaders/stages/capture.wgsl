@@ -10,6 +10,9 @@ struct Cube {
 }
 @group(0) @binding(0) var<uniform> cube: Cube;
 
+// The layer drawn into.
+var<immediate> face: u32;
+
 struct Varying {
     @builtin(position) clip: vec4<f32>,
     @location(0) position: vec3<f32>,
@@ -22,7 +25,6 @@ struct Varying {
 fn vertex(
     @builtin(vertex_index) index: u32,
     @builtin(instance_index) object: u32,
-    @builtin(view_index) face: u32,
 ) -> Varying {
     let v = vertices[index];
     let o = objects[object];

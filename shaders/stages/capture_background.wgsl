@@ -3,6 +3,9 @@
 #import common::cube::cube_direction
 #import common::record::NO_OBJECT
 
+// The layer drawn into.
+var<immediate> face: u32;
+
 struct Varying {
     @builtin(position) position: vec4<f32>,
     @location(0) uv: vec2<f32>,
@@ -10,7 +13,7 @@ struct Varying {
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) index: u32, @builtin(view_index) face: u32) -> Varying {
+fn vertex(@builtin(vertex_index) index: u32) -> Varying {
     let corner = vec2(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
     return Varying(vec4(corner, 0.0, 1.0), 0.5 * (corner + 1.0), face);
 }

@@ -252,13 +252,10 @@ fn create(
     queue_family: u32,
     info: &DeviceInfo,
 ) -> Result<(ash::Device, bool)> {
-    let mut has11 = vk::PhysicalDeviceVulkan11Features::default();
     let mut has12 = vk::PhysicalDeviceVulkan12Features::default();
     let mut has13 = vk::PhysicalDeviceVulkan13Features::default();
-    let mut has = vk::PhysicalDeviceFeatures2::default()
-        .push_next(&mut has11)
-        .push_next(&mut has12)
-        .push_next(&mut has13);
+    let mut has =
+        vk::PhysicalDeviceFeatures2::default().push_next(&mut has12).push_next(&mut has13);
     // SAFETY: `physical` is of this instance and reports Vulkan 1.3, which knows these structures.
     let extensions = unsafe {
         instance.raw.get_physical_device_features2(physical, &mut has);
@@ -269,7 +266,6 @@ fn create(
         (base.geometry_shader, "primitive ids in fragment shaders (geometryShader)"),
         (base.fragment_stores_and_atomics, "fragmentStoresAndAtomics"),
         (base.independent_blend, "independentBlend"),
-        (has11.multiview, "multiview"),
         (has12.host_query_reset, "hostQueryReset"),
         (has13.dynamic_rendering, "dynamicRendering"),
         (has13.synchronization2, "synchronization2"),
@@ -287,7 +283,6 @@ fn create(
         .fragment_stores_and_atomics(true)
         .independent_blend(true)
         .pipeline_statistics_query(has_statistics);
-    let mut use11 = vk::PhysicalDeviceVulkan11Features::default().multiview(true);
     let mut use12 = vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true);
     let mut use13 = vk::PhysicalDeviceVulkan13Features::default()
         .dynamic_rendering(true)
@@ -300,7 +295,6 @@ fn create(
         .queue_create_infos(&queues)
         .enabled_extension_names(&names)
         .enabled_features(&base)
-        .push_next(&mut use11)
         .push_next(&mut use12)
         .push_next(&mut use13);
     // SAFETY: every pointer in `create` outlives the call; features and extension were checked.

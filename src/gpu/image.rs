@@ -104,6 +104,8 @@ pub(super) struct Owner {
     pub raw: vk::Image,
     view: vk::ImageView,
     cube: Option<vk::ImageView>,
+    /// One a layer, to draw into.
+    layers: Vec<vk::ImageView>,
     allocation: Option<Allocation>,
     reserved: u64,
 }
@@ -155,6 +157,7 @@ impl Image {
             raw,
             view: vk::ImageView::null(),
             cube: None,
+            layers: Vec::new(),
             allocation: None,
             reserved: requirements.size,
         };
@@ -175,8 +178,8 @@ impl Image {
         &self.name
     }
 
-    pub(super) fn attachment_view(&self) -> vk::ImageView {
-        self.owner.view
+    pub(super) fn attachment_view(&self, layer: u32) -> vk::ImageView {
+        self.owner.layers[layer as usize]
     }
 
     /// The view a shader variable of this kind wants, or why there is none.
@@ -269,25 +272,33 @@ fn range(format: Format, shape: Shape) -> vk::ImageSubresourceRange {
 
 impl Owner {
     fn make_views(&mut self, name: &str, format: Format, shape: Shape) -> Result<()> {
-        let new = |kind| {
+        let whole = range(format, shape);
+        let new = |kind, range| {
             let info = vk::ImageViewCreateInfo::default()
                 .image(self.raw)
                 .view_type(kind)
                 .format(format.raw())
-                .subresource_range(range(format, shape));
-            // SAFETY: the image is alive and bound, and the range is all of it.
+                .subresource_range(range);
+            // SAFETY: the image is alive and bound, and the range lies in it.
             unsafe { self.device.raw.create_image_view(&info, None) }
                 .map_err(|e| self.device.fail("vkCreateImageView", name, e))
         };
-        match shape {
-            Shape::Flat => self.view = new(vk::ImageViewType::TYPE_2D)?,
-            Shape::Cube => {
-                self.view = new(vk::ImageViewType::TYPE_2D_ARRAY)?;
-                if format != Format::DepthStencil {
-                    self.cube = Some(new(vk::ImageViewType::CUBE)?);
-                }
-            }
+        let flat = vk::ImageViewType::TYPE_2D;
+        let mut layers = Vec::new();
+        for layer in 0..shape.layers() {
+            layers.push(new(flat, whole.base_array_layer(layer).layer_count(1))?);
         }
+        let (view, cube) = match shape {
+            Shape::Flat => (new(flat, whole)?, None),
+            Shape::Cube if format == Format::DepthStencil => {
+                (new(vk::ImageViewType::TYPE_2D_ARRAY, whole)?, None)
+            }
+            Shape::Cube => (
+                new(vk::ImageViewType::TYPE_2D_ARRAY, whole)?,
+                Some(new(vk::ImageViewType::CUBE, whole)?),
+            ),
+        };
+        (self.layers, self.view, self.cube) = (layers, view, cube);
         Ok(())
     }
 }
@@ -297,9 +308,8 @@ impl Drop for Owner {
         // SAFETY: frames hold an owner until their submit was waited for: nothing uses it now. A
         // view that was never made is null, which Vulkan ignores.
         unsafe {
-            self.device.raw.destroy_image_view(self.view, None);
-            if let Some(cube) = self.cube {
-                self.device.raw.destroy_image_view(cube, None);
+            for view in self.layers.iter().copied().chain(self.cube).chain([self.view]) {
+                self.device.raw.destroy_image_view(view, None);
             }
             self.device.raw.destroy_image(self.raw, None);
         }

@@ -387,6 +387,20 @@ impl<'f> Pass<'f> {
 
     /// Draw into the attachments.
     pub fn draw(self, draws: impl FnOnce(&mut Draw<'_>)) -> Result<()> {
+        let mut draws = Some(draws);
+        self.draw_layers(1, |draw| {
+            if let Some(draws) = draws.take() {
+                draws(draw);
+            }
+        })
+    }
+
+    /// Draw into the first layers of the attachments, one after the other; a shader's
+    /// `var<immediate>` of one word is the layer.
+    ///
+    /// Multiview would do this in one go, but clipped triangles land in layer 0 with it on
+    /// lavapipe (Mesa 22.3).
+    pub fn draw_layers(self, layers: u32, mut draws: impl FnMut(&mut Draw<'_>)) -> Result<()> {
         let Program::Graphics(pipeline) = self.program else {
             return Err(self.wrong("no graphics pipeline to draw with"));
         };
@@ -394,20 +408,37 @@ impl<'f> Pass<'f> {
         let Some(size) = first.or(self.depth_stencil.map(|(image, ..)| image.size)) else {
             return Err(self.wrong("nothing to draw into"));
         };
-        self.record(Some((&pipeline.owner, vk::PipelineBindPoint::GRAPHICS)), |pass| {
-            pass.begin_rendering(size, pipeline.views);
-            draws(&mut Draw { frame: &mut *pass.frame });
-            let frame = &pass.frame;
-            // SAFETY: rendering was begun just above.
-            unsafe { frame.device.raw.cmd_end_rendering(frame.commands) };
+        let owner = &pipeline.owner;
+        self.record(Some((owner, vk::PipelineBindPoint::GRAPHICS)), |pass| {
+            for layer in 0..layers {
+                pass.begin_rendering(size, layer);
+                if owner.layout.has_immediate {
+                    let (raw, commands) = (&pass.frame.device.raw, pass.frame.commands);
+                    let word = layer.to_ne_bytes();
+                    // SAFETY: recording; the layout has this range.
+                    unsafe {
+                        raw.cmd_push_constants(
+                            commands,
+                            owner.layout.raw,
+                            owner.layout.stages,
+                            0,
+                            &word,
+                        );
+                    }
+                }
+                draws(&mut Draw { frame: &mut *pass.frame });
+                let frame = &pass.frame;
+                // SAFETY: rendering was begun just above.
+                unsafe { frame.device.raw.cmd_end_rendering(frame.commands) };
+            }
             Ok(())
         })
     }
 
-    fn begin_rendering(&self, size: [u32; 2], views: u32) {
+    fn begin_rendering(&self, size: [u32; 2], layer: u32) {
         let attachment = |image: &Image, load: Load, value| {
             vk::RenderingAttachmentInfo::default()
-                .image_view(image.attachment_view())
+                .image_view(image.attachment_view(layer))
                 .image_layout(vk::ImageLayout::GENERAL)
                 .load_op(load.op())
                 .store_op(vk::AttachmentStoreOp::STORE)
@@ -428,7 +459,6 @@ impl<'f> Pass<'f> {
         let mut info = vk::RenderingInfo::default()
             .render_area(area)
             .layer_count(1)
-            .view_mask(views)
             .color_attachments(&colours);
         if let Some((depth, stencil)) = &depth_stencil {
             info = info.depth_attachment(depth).stencil_attachment(stencil);

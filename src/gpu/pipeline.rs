@@ -15,6 +15,9 @@ pub(super) struct Layout {
     set: vk::DescriptorSetLayout,
     pub raw: vk::PipelineLayout,
     pub bindings: Vec<Binding>,
+    pub stages: vk::ShaderStageFlags,
+    /// Whether the shader has a `var<immediate>`, of one word.
+    pub has_immediate: bool,
 }
 
 pub(super) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
@@ -31,9 +34,11 @@ impl Layout {
     fn new(
         device: &Arc<Device>,
         name: &str,
-        bindings: Vec<Binding>,
+        compiled: &mut Compiled,
         stages: vk::ShaderStageFlags,
     ) -> Result<Layout> {
+        let bindings = std::mem::take(&mut compiled.bindings);
+        let has_immediate = compiled.has_immediate;
         let descriptors: Vec<_> = bindings
             .iter()
             .map(|b| {
@@ -50,10 +55,15 @@ impl Layout {
         // SAFETY: a live device and a complete description.
         let set = unsafe { device.raw.create_descriptor_set_layout(&info, None) }
             .map_err(|e| device.fail("vkCreateDescriptorSetLayout", name, e))?;
-        let mut layout =
-            Layout { device: device.clone(), set, raw: vk::PipelineLayout::null(), bindings };
+        let raw = vk::PipelineLayout::null();
+        let device = device.clone();
+        let mut layout = Layout { device, set, raw, bindings, stages, has_immediate };
+        let device = &layout.device;
         let sets = [set];
-        let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
+        let ranges = [vk::PushConstantRange::default().stage_flags(stages).size(4)];
+        let info = vk::PipelineLayoutCreateInfo::default()
+            .set_layouts(&sets)
+            .push_constant_ranges(&ranges[..usize::from(has_immediate)]);
         // SAFETY: as above; the set layout is alive.
         layout.raw = unsafe { device.raw.create_pipeline_layout(&info, None) }
             .map_err(|e| device.fail("vkCreatePipelineLayout", name, e))?;
@@ -140,8 +150,7 @@ impl ComputePipeline {
         let mut compiled = device.shaders().compile(file, defines)?;
         let name = entry_name(file, &compiled, entry)?;
         let module = Module::new(device, file, &compiled)?;
-        let bindings = std::mem::take(&mut compiled.bindings);
-        let layout = Layout::new(device, file, bindings, vk::ShaderStageFlags::COMPUTE)?;
+        let layout = Layout::new(device, file, &mut compiled, vk::ShaderStageFlags::COMPUTE)?;
         let stage = vk::PipelineShaderStageCreateInfo::default()
             .stage(vk::ShaderStageFlags::COMPUTE)
             .module(module.raw)
@@ -190,14 +199,11 @@ pub struct Attachments<'a> {
     pub depth_stencil: bool,
     pub depth: Depth,
     pub stencil: Stencil,
-    /// Layers drawn at once, one a bit, told apart by `@builtin(view_index)`; 0 for one layer.
-    pub views: u32,
 }
 
 /// A vertex and a fragment shader with fixed state: triangles, both sides, no blending.
 pub struct GraphicsPipeline {
     pub(super) owner: Arc<Owner>,
-    pub(super) views: u32,
 }
 
 impl GraphicsPipeline {
@@ -212,9 +218,8 @@ impl GraphicsPipeline {
         let names =
             [entry_name(file, &compiled, "vertex")?, entry_name(file, &compiled, "fragment")?];
         let module = Module::new(device, file, &compiled)?;
-        let bindings = std::mem::take(&mut compiled.bindings);
         let both = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
-        let layout = Layout::new(device, file, bindings, both)?;
+        let layout = Layout::new(device, file, &mut compiled, both)?;
         let flags = [vk::ShaderStageFlags::VERTEX, vk::ShaderStageFlags::FRAGMENT];
         let stages = [0, 1].map(|i| {
             vk::PipelineShaderStageCreateInfo::default()
@@ -225,7 +230,7 @@ impl GraphicsPipeline {
         let raw = create_graphics(device, file, &stages, layout.raw, attachments)?;
         device.name(raw, file);
         let owner = Arc::new(Owner { raw, layout });
-        Ok(GraphicsPipeline { owner, views: attachments.views })
+        Ok(GraphicsPipeline { owner })
     }
 }
 
@@ -261,9 +266,8 @@ fn create_graphics(
     ];
     let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&states);
     let formats: Vec<_> = attachments.colours.iter().map(|f| f.raw()).collect();
-    let mut rendering = vk::PipelineRenderingCreateInfo::default()
-        .view_mask(attachments.views)
-        .color_attachment_formats(&formats);
+    let mut rendering =
+        vk::PipelineRenderingCreateInfo::default().color_attachment_formats(&formats);
     if attachments.depth_stencil {
         let format = Format::DepthStencil.raw();
         rendering = rendering.depth_attachment_format(format).stencil_attachment_format(format);

@@ -52,6 +52,8 @@ pub struct Binding {
 pub(super) struct Compiled {
     pub spirv: Vec<u32>,
     pub bindings: Vec<Binding>,
+    /// Whether there is a `var<immediate>`.
+    pub has_immediate: bool,
     /// Workgroup size of each entry point, zero for graphics stages.
     pub entries: Vec<(String, [u32; 3])>,
 }
@@ -178,14 +180,16 @@ impl Shaders {
         let bindings = reflect(&module).map_err(|e| wrong(&e))?;
         let entries =
             module.entry_points.iter().map(|e| (e.name.clone(), e.workgroup_size)).collect();
-        Ok(Compiled { spirv, bindings, entries })
+        let mut spaces = module.global_variables.iter().map(|(_, v)| v.space);
+        let has_immediate = spaces.any(|s| s == naga::AddressSpace::Immediate);
+        Ok(Compiled { spirv, bindings, has_immediate, entries })
     }
 }
 
 /// What the device is required to have, and no more: a shader beyond it fails here, by name.
 fn capabilities() -> Capabilities {
     Capabilities::PRIMITIVE_INDEX
-        | Capabilities::MULTIVIEW
+        | Capabilities::IMMEDIATES
         | Capabilities::SHADER_FLOAT16_IN_FLOAT32
 }
 

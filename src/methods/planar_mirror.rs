@@ -59,7 +59,6 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         depth_stencil: true,
         depth: Depth::Nearest,
         stencil: Stencil::Within,
-        views: 0,
     };
     let (device, folder) = (setup.device, "planar_mirror");
     Ok(Box::new(PlanarMirror {

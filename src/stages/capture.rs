@@ -1,4 +1,5 @@
 //! The captured map: the scene as seen from a point, in six faces, with each texel's own point.
+//! A texel shows what its centre sees.
 
 use std::sync::Arc;
 
@@ -70,7 +71,6 @@ impl CaptureStage {
             depth_stencil: false,
             depth: Depth::Off,
             stencil: Stencil::Off,
-            views: 0b11_1111,
         };
         let surfaces = Attachments { depth_stencil: true, depth: Depth::Nearest, ..background };
         let pipeline = |file, a| GraphicsPipeline::new(device, file, &[], a);
@@ -106,7 +106,7 @@ impl CaptureStage {
             .colour("radiance", &target.radiance, clear)
             .colour("point", &target.point, clear)
             .colour("ids", &target.ids, Load::ClearWords([0; 4]))
-            .draw(|draw| draw.vertices(3))?;
+            .draw_layers(6, |draw| draw.vertices(3))?;
         let pass = frame.pass(&format!("{name}/capture")).graphics(&self.surfaces);
         scene
             .bind(pass)
@@ -115,7 +115,7 @@ impl CaptureStage {
             .colour("point", &target.point, Load::Keep)
             .colour("ids", &target.ids, Load::Keep)
             .depth_stencil(&target.depth, clear, Load::ClearWords([0; 4]))
-            .draw(|draw| scene.draw(draw, |object| !exclude.contains(&object)))
+            .draw_layers(6, |draw| scene.draw(draw, |object| !exclude.contains(&object)))
     }
 }
 

@@ -30,7 +30,6 @@ impl DirectView {
             depth_stencil: false,
             depth: Depth::Off,
             stencil: Stencil::Off,
-            views: 0,
         };
         let surfaces = Attachments {
             colours: &colours,

@@ -37,7 +37,6 @@ impl Footprint {
             depth_stencil: true,
             depth: Depth::NearestOrEqual,
             stencil: Stencil::Mark,
-            views: 0,
         };
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         Ok(Footprint {
