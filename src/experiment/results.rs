@@ -386,4 +386,16 @@ pub(super) mod tests {
         assert_eq!((method.as_str(), variant.as_str()), ("m;m", "published;published"));
         assert!(params.contains_key("ball/steps") && params.contains_key("*/tau"));
     }
+    /// `BLESS=1` writes the file, and fails so that nobody blesses unawares.
+    #[test]
+    fn the_committed_schema_is_current() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/paper-figures/results.schema.json");
+        let current = format!("{:#}\n", Row::schema());
+        if std::env::var_os("BLESS").is_some() {
+            std::fs::write(path, &current).unwrap();
+            panic!("blessed {path}");
+        }
+        let committed = std::fs::read_to_string(path).unwrap_or_default();
+        assert!(committed == current, "{path} is stale: run the test again with BLESS=1");
+    }
 }
