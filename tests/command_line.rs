@@ -76,13 +76,114 @@ fn wrong_flags_end_in_2() {
 
 #[test]
 fn unknown_names_end_in_2_and_say_what_is_valid() {
-    refused(&["describe", "magic"], 2, &["no method `magic`"]);
+    refused(&["describe", "magic"], 2, &["no method `magic`", "environment-map"]);
+    for (case, words) in [
+        ("enviroment-map", "did you mean environment-map?"),
+        ("environment-map:indx=surface", "did you mean index?"),
+        ("environment-map:index=sideways", "direction"),
+        ("environment-map@revised", "valid: published"),
+        ("truth:spp=0", "an integer from 1"),
+    ] {
+        refused(&["render", "--scene", "sky", "--case", case], 2, &[case, words]);
+    }
+    refused(&["render", "--scene", "skye", "--case", "truth"], 2, &["skye", "columns"]);
+    let vary = ["--vary", "planar-mirror.index=surface"];
+    let bench = ["bench", "--scene", "sky", "--case", "environment-map"];
+    refused(&[&bench[..], &vary[..]].concat(), 2, &["no case uses the method `planar-mirror`"]);
     for command in ["render", "profile", "bench"] {
         let arguments = [command, "--scene", "sky", "--case", "magic:x=1"];
         refused(&arguments, 2, &["case `magic:x=1`", "no method `magic`"]);
     }
     // A message stays one line, whatever the user wrote.
     refused(&["describe", "a\nb"], 2, &["no method `a b`"]);
+}
+
+#[test]
+fn methods_are_listed_and_described() {
+    let list = stdout(&["list", "methods"]);
+    for method in ["truth", "none", "environment-map", "planar-mirror"] {
+        assert!(list.lines().any(|line| line.starts_with(method)), "{list}");
+        assert!(stdout(&["describe", method]).contains("paper"), "{method}");
+    }
+    let card = stdout(&["describe", "environment-map", "--json"]);
+    let card: serde_json::Value = serde_json::from_str(&card).unwrap();
+    let params = card["params"].as_array().unwrap();
+    assert!(params.iter().any(|param| param["name"] == "index"), "{card}");
+}
+
+/// The truth needs no device: a whole run, from flags to files.
+#[test]
+fn the_truth_is_rendered_compared_and_recorded() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("new/run");
+    let out = out.to_str().unwrap();
+    let render = ["render", "--scene", "columns", "--case", "truth", "--size", "64x48"];
+    let render = [&render[..], &["--frames", "1..3", "--truth-frames", "1", "--out", out]].concat();
+    let row = stdout(&[&render[..], &["--json"]].concat());
+    let row: serde_json::Value = serde_json::from_str(&row).unwrap();
+    assert_eq!(row["frames"], serde_json::json!([1, 2]));
+    assert_eq!(row["accuracy"]["bad_share"]["0.5"], 0.0, "the truth is true");
+    assert_eq!(row["scene"]["name"], "columns");
+    for file in ["frame-0001.exr", "frame-0002.png", "results.jsonl"] {
+        assert!(Path::new(out).join(file).is_file(), "{file}");
+    }
+    let arrays = format!("{}.frames.json", row["run"].as_str().unwrap());
+    assert!(Path::new(out).join(arrays).is_file());
+
+    // An interrupted run leaves half a row; the next one cuts it off and keeps what was whole.
+    let results = Path::new(out).join("results.jsonl");
+    let whole = fs::read_to_string(&results).unwrap();
+    fs::write(&results, format!("{whole}{}", &whole[..40])).unwrap();
+    stdout(&render);
+    let again = fs::read_to_string(&results).unwrap();
+    assert_eq!(again, whole.repeat(2), "the same run gives the same row");
+
+    stdout(&["diff", out, out, "--max-bad-share", "0", "--at-px", "0.5"]);
+    refused(&["diff", out, out, "--max-bad-share", "0", "--at-px", "3"], 2, &["0.5, 1, 2, 4"]);
+}
+
+#[test]
+fn a_pixel_is_probed_in_truth() {
+    let probe = ["probe", "--scene", "columns", "--size", "64x48", "--case", "truth", "--json"];
+    let scene = scene::load("columns").unwrap();
+    let frame = Tracer::new(&scene, &scene.at(0), TruthOptions::default()).frame([64, 48]);
+    let pixels = frame.reflector_pixels();
+    let middle = pixels[pixels.len() / 2];
+    let pixel = format!("{},{}", middle % 64, middle / 64);
+    let answer = stdout(&[&probe[..], &["--pixel", &pixel]].concat());
+    let answer: serde_json::Value = serde_json::from_str(&answer).unwrap();
+    assert!(answer["mirror"]["n"].is_array(), "{pixel} sees the sphere: {answer}");
+    let [truth, case] = answer["answers"].as_array().unwrap().as_slice() else {
+        panic!("{answer}")
+    };
+    assert_eq!(truth["s"], case["s"]);
+    assert_eq!(case["verdict"], "right");
+    let corner = stdout(&[&probe[..], &["--pixel", "0,0"]].concat());
+    assert!(corner.contains("\"mirror\":null"), "{corner}");
+    refused(&[&probe[..], &["--pixel", "64,0"]].concat(), 2, &["valid: 0,0 to 63,47"]);
+}
+
+#[test]
+fn an_unwritable_folder_ends_in_6_before_any_work() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "").unwrap();
+    let out = file.join("below");
+    let out = out.to_str().unwrap();
+    for command in ["render", "profile", "bench"] {
+        let case = if command == "profile" { "none" } else { "truth" };
+        // At this size the work itself would take minutes.
+        let arguments = [command, "--scene", "columns", "--case", case, "--size", "16384x16384"];
+        refused(&[&arguments[..], &["--out", out]].concat(), 6, &["cannot write", out]);
+    }
+}
+
+#[test]
+fn frames_beyond_the_animation_end_in_2() {
+    for flags in [["--frame", "999999"], ["--frames", "0..999999"]] {
+        let render = ["render", "--scene", "columns", "--case", "truth"];
+        refused(&[&render[..], &flags[..]].concat(), 2, &["no frame", "valid: 0 to"]);
+    }
 }
 
 #[test]
@@ -208,5 +309,5 @@ fn a_machine_without_vulkan_ends_in_3_and_says_what_to_install() {
     }
     let assert = command.env("VK_LOADER_LAYERS_DISABLE", "*").arg("doctor").assert().code(3);
     let text = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
-    assert!(text.contains("mirrorbench: error: ") && text.contains("apt install"), "{text}");
+    assert!(text.contains("mirrorbench: error: ") && text.contains("apt-get install"), "{text}");
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use serde_json::json;
 
+use super::engine::FrameTimes;
 use super::evidence::{self, Evidence};
 use super::lab::{Lab, TRUTH};
 use super::output::{OutputFolder, write_file};
@@ -48,20 +49,18 @@ pub fn bench(lab: &Lab, scene: &Scene, cases: &[Case], plan: &BenchPlan) -> Resu
     let outcomes = cases.iter().zip(gathered).enumerate().map(|(i, (case, evidence))| {
         let timed = timings.remove(&i);
         let mut row = row(lab, scene, case, plan, &truth_frames)?;
-        if let Some((timing, pixels)) = &timed {
+        if let Some((timing, still)) = &timed {
             row.prepare = Some(rows::prepare(timing));
             row.frame_gpu_ms = rows::frame_time(timing, lab.settings.seed);
             row.passes = rows::passes(timing);
-            row.counters = rows::counters(timing);
+            rows::add_invocations(&mut row.passes, &still.times);
             row.clock = Some(timing.clock);
             row.software_timing = row.device.is_software;
-            row.reflector_pixels = *pixels as f64;
+            row.reflector_pixels = Some(still.reflector_pixels as f64);
         }
         if !evidence.frames.is_empty() {
-            row.reflector_pixels = evidence.reflector_pixels;
+            row.reflector_pixels = Some(evidence.reflector_pixels);
             row.accuracy = evidence.accuracy();
-        }
-        if !evidence.counters.is_empty() {
             row.counters.clone_from(&evidence.counters);
         }
         Ok(Outcome { row, timing: timed.map(|(timing, _)| timing), evidence })
@@ -69,13 +68,19 @@ pub fn bench(lab: &Lab, scene: &Scene, cases: &[Case], plan: &BenchPlan) -> Resu
     outcomes.collect()
 }
 
-/// Times every case but the truth, by its place in the list, with the reflector pixels it covered.
+/// One frame drawn on its own after the timing: bursts count neither invocations nor pixels.
+struct Still {
+    times: FrameTimes,
+    reflector_pixels: usize,
+}
+
+/// Times every case but the truth, by its place in the list.
 fn time(
     lab: &Lab,
     scene: &Scene,
     cases: &[Case],
     plan: &BenchPlan,
-) -> Result<BTreeMap<usize, (Timing, u64)>> {
+) -> Result<BTreeMap<usize, (Timing, Still)>> {
     let places: Vec<usize> = (0..cases.len()).filter(|&i| !cases[i].uses(TRUTH)).collect();
     if places.is_empty() {
         return Ok(BTreeMap::new());
@@ -97,8 +102,13 @@ fn time(
         lab.progress.set_position(begun + (share * cases.len() as f64) as u64);
     })?;
     lab.progress.set_position(begun);
-    let pixels = engines.iter().map(|engine| engine.pixels());
-    Ok(places.into_iter().zip(timings.into_iter().zip(pixels)).collect())
+    let middle = &moments[moments.len() / 2];
+    let stills = engines.iter_mut().map(|engine| {
+        let (frame, times) = engine.frame(middle, true)?;
+        Ok(Still { times, reflector_pixels: frame.reflector_pixels().len() })
+    });
+    let stills = stills.collect::<Result<Vec<_>>>()?;
+    Ok(places.into_iter().zip(timings.into_iter().zip(stills)).collect())
 }
 
 /// A row without measurements.
@@ -127,7 +137,7 @@ pub fn row(
         truth_frames: truth_frames.to_vec(),
         device: lab.device_card(case)?,
         software_timing: false,
-        reflector_pixels: 0.0,
+        reflector_pixels: None,
         prepare: None,
         frame_gpu_ms: None,
         passes: Vec::new(),

@@ -1,27 +1,24 @@
 //! One case, set up on one device for one scene and size: draws frames, reads them back, times them.
 
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::error::{Error, Result};
-use crate::gpu::Device;
-use crate::methods::{Case, MethodInfo};
-use crate::scene::{FrameRecord, Moment, Scene};
+use glam::{Vec3, Vec4, Vec4Swizzles};
+use half::f16;
 
-/// Time of one pass of one frame.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PassTime {
-    /// `method/step`, as given to `Frame::pass`.
-    pub name: String,
-    /// GPU milliseconds between the timestamps around the pass; 0 for a CPU scope.
-    pub gpu_ms: f64,
-    /// CPU milliseconds of a CPU scope; 0 for a GPU pass.
-    pub cpu_ms: f64,
-    /// Shader invocations from the pipeline statistics, where counted.
-    pub invocations: u64,
-    /// When it began, milliseconds after the frame's first timestamp.
-    pub begin_ms: f64,
-}
+use super::dump_file;
+use crate::error::{Error, Result};
+use crate::gpu::{Device, Frame, Recorded};
+use crate::methods::{Case, Changes, MethodInfo, ReflectionMethod, Setup, Want};
+use crate::scene::{FrameRecord, Moment, ObjectId, Scene, matches_pattern};
+use crate::stages::{
+    CameraUniform, Composite, DirectView, EnvironmentFallback, Footprint, GpuScene,
+    ReflectionRecord, View,
+};
+
+pub use crate::gpu::PassTime;
+pub use crate::stages::RecordMode;
 
 /// Times of one frame.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,17 +31,8 @@ pub struct FrameTimes {
     pub frame_gpu_ms: f64,
     /// Bytes of device memory the prepared structures hold.
     pub prepare_bytes: u64,
-    /// The method's counters, named as in its `MethodInfo`.
+    /// The method's counters, named as in its `MethodInfo`; empty without full records.
     pub counters: Vec<(String, u64)>,
-}
-
-/// What is written into the record.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RecordMode {
-    /// Radiance only: what a renderer needs; for timing.
-    Radiance,
-    /// Radiance and the evidence: for accuracy.
-    Full,
 }
 
 /// What fills pixels the method left missing or flagged.
@@ -68,28 +56,272 @@ pub struct RunOptions {
     pub seed: u64,
 }
 
-pub struct Engine;
+/// A method and the reflectors it serves.
+struct Part {
+    info: &'static MethodInfo,
+    method: Box<dyn ReflectionMethod>,
+    reflectors: Vec<ObjectId>,
+    /// The moment it was last prepared for.
+    prepared: Option<Moment>,
+}
+
+/// Draws a case.
+pub struct Engine {
+    device: Arc<Device>,
+    frame: Frame,
+    scene: GpuScene,
+    direct: DirectView,
+    footprint: Footprint,
+    record: ReflectionRecord,
+    fallback: Option<EnvironmentFallback>,
+    composite: Composite,
+    parts: Vec<Part>,
+    options: RunOptions,
+    /// Opposite corners of the box of all eyes of the scene's camera path.
+    eyes: [Vec3; 2],
+    prepare_bytes: u64,
+}
+
+/// Where one frame's passes stand among those of a submit.
+struct Recording {
+    prepare: Range<usize>,
+    passes: Range<usize>,
+}
 
 impl Engine {
+    /// Upload the scene, compile the pipelines.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where the case or the fallback does not fit the scene, [`Error::Device`]
+    /// where the scene is beyond the device's limits, [`Error::Shader`].
     pub fn new(
-        _device: &Arc<Device>,
-        _scene: &Scene,
-        _case: &Case,
-        _registry: &[&'static MethodInfo],
-        _options: &RunOptions,
+        device: &Arc<Device>,
+        scene: &Scene,
+        case: &Case,
+        registry: &[&'static MethodInfo],
+        options: &RunOptions,
     ) -> Result<Engine> {
-        Err(Error::Device("not built yet".into()))
+        if let Some(folder) = &options.shader_dir {
+            device.read_shaders(folder)?;
+        }
+        let (size, mode) = (options.size, options.record);
+        let fallback = match options.fallback {
+            Fallback::None => None,
+            Fallback::Environment => Some(EnvironmentFallback::new(device, mode)?),
+            Fallback::Ray => {
+                return Err(Error::Usage(
+                    "--fallback ray needs the ray-traced method, which is not built yet; valid: \
+                     none, environment"
+                        .into(),
+                ));
+            }
+        };
+        let gpu_scene = GpuScene::new(device, &Arc::new(scene.clone()))?;
+        let parts = parts(device, &gpu_scene, case, registry, options)?;
+        Ok(Engine {
+            frame: Frame::new(device)?,
+            direct: DirectView::new(device, size)?,
+            footprint: Footprint::new(device, size)?,
+            record: ReflectionRecord::new(device, size, mode)?,
+            composite: Composite::new(device, size)?,
+            eyes: eyes(scene),
+            prepare_bytes: 0,
+            fallback,
+            parts,
+            options: options.clone(),
+            scene: gpu_scene,
+            device: device.clone(),
+        })
     }
 
-    pub fn frame(&mut self, _moment: &Moment, _cut: bool) -> Result<(FrameRecord, FrameTimes)> {
-        Err(Error::Device("not built yet".into()))
+    /// Draw one frame and read it back. `cut`: it does not follow the frame before.
+    pub fn frame(&mut self, moment: &Moment, cut: bool) -> Result<(FrameRecord, FrameTimes)> {
+        self.frame.count_invocations(true);
+        if let Some((pattern, _)) = &self.options.dump {
+            let pattern = pattern.clone();
+            self.frame.dump_where(move |pass| matches_pattern(&pattern, pass));
+        }
+        self.frame.begin()?;
+        let recording = self.record_frame(moment, cut)?;
+        let recorded = self.frame.submit()?;
+        if let Some((_, folder)) = &self.options.dump {
+            for dump in &recorded.dumps {
+                dump_file::write(folder, dump)?;
+            }
+        }
+        let mut times = self.times(&recorded, &recording);
+        let counts = self.record.counters()?;
+        for part in &self.parts {
+            let named = part.info.counters.iter().zip(&counts);
+            times.counters.extend(named.map(|(name, n)| ((*name).to_owned(), u64::from(*n))));
+        }
+        Ok((self.read()?, times))
     }
 
-    pub fn burst(&mut self, _moments: &[Moment]) -> Result<Vec<FrameTimes>> {
-        Err(Error::Device("not built yet".into()))
+    /// Draw frames in one submit, nothing read back: for timing.
+    pub fn burst(&mut self, moments: &[Moment]) -> Result<Vec<FrameTimes>> {
+        self.frame.count_invocations(false);
+        self.frame.begin()?;
+        let recordings = moments
+            .iter()
+            .enumerate()
+            .map(|(i, moment)| self.record_frame(moment, i == 0))
+            .collect::<Result<Vec<_>>>()?;
+        let recorded = self.frame.submit()?;
+        Ok(recordings.iter().map(|recording| self.times(&recorded, recording)).collect())
     }
 
+    /// Pixels of a view.
     pub fn pixels(&self) -> u64 {
-        0
+        u64::from(self.options.size[0]) * u64::from(self.options.size[1])
     }
+
+    /// Record everything of one frame.
+    fn record_frame(&mut self, moment: &Moment, cut: bool) -> Result<Recording> {
+        let start = self.frame.scopes();
+        self.scene.pose(&mut self.frame, moment)?;
+        self.prepare(moment)?;
+        let prepared = self.frame.scopes();
+        let camera = CameraUniform::new(&moment.camera, self.options.size);
+        let (frame, scene) = (&mut self.frame, &self.scene);
+        self.direct.draw(frame, scene, &camera, &self.footprint.depth_stencil)?;
+        self.footprint.draw(frame, scene, &camera)?;
+        self.record.clear(frame)?;
+        let mut view = View {
+            camera,
+            size: self.options.size,
+            direct: &self.direct,
+            footprint: &self.footprint,
+            reflectors: &[],
+            cut,
+        };
+        for part in &mut self.parts {
+            view.reflectors = &part.reflectors;
+            part.method.reflect(frame, scene, &view, &mut self.record)?;
+        }
+        if let Some(fallback) = &self.fallback {
+            fallback.fill(frame, scene, &view, &self.record)?;
+        }
+        self.composite.run(frame, scene, &self.direct, &self.footprint, &self.record)?;
+        let end = self.frame.scopes();
+        Ok(Recording { prepare: start..prepared, passes: prepared..end })
+    }
+
+    /// Prepare the methods for which something they depend on moved.
+    fn prepare(&mut self, moment: &Moment) -> Result<()> {
+        for part in &mut self.parts {
+            let changed = match &part.prepared {
+                None => Changes::ALL,
+                Some(before) => changes(&self.scene.scene, before, moment),
+            };
+            if part.prepared.is_some() && !changed.touches(part.info.depends) {
+                continue;
+            }
+            let want = Want { changed, eyes: self.eyes, reflectors: &part.reflectors };
+            let before = self.device.allocated_bytes();
+            part.method.prepare(&mut self.frame, &self.scene, &want)?;
+            let after = self.device.allocated_bytes();
+            // What a later call frees, an earlier one had allocated.
+            self.prepare_bytes = (self.prepare_bytes + after).saturating_sub(before);
+            part.prepared = Some(moment.clone());
+        }
+        Ok(())
+    }
+
+    fn times(&self, recorded: &Recorded, recording: &Recording) -> FrameTimes {
+        let passes = recorded.passes[recording.passes.clone()].to_vec();
+        let begin = passes.first().map_or(0.0, |p| p.begin_ms);
+        let end = passes.last().map_or(0.0, |p| p.begin_ms + p.gpu_ms);
+        FrameTimes {
+            prepare: recorded.passes[recording.prepare.clone()].to_vec(),
+            passes,
+            frame_gpu_ms: end - begin,
+            prepare_bytes: self.prepare_bytes,
+            counters: Vec::new(),
+        }
+    }
+
+    /// The images of the last frame.
+    fn read(&self) -> Result<FrameRecord> {
+        let xyz = |v: Vec<Vec4>| v.into_iter().map(|v| v.xyz()).collect();
+        let colour = self.composite.picture.read::<[f16; 4]>()?;
+        Ok(FrameRecord {
+            size: self.options.size,
+            colour: colour
+                .iter()
+                .map(|c| Vec3::from([c[0], c[1], c[2]].map(f16::to_f32)))
+                .collect(),
+            depth: self.direct.depth.read()?,
+            object: self.direct.object.read()?,
+            reflector: self.footprint.reflector.read()?,
+            position: xyz(self.footprint.position.read()?),
+            normal: xyz(self.footprint.normal.read()?),
+            record: self.record.read()?,
+        })
+    }
+}
+
+/// Make the methods of a case, each for the reflectors its pattern serves.
+fn parts(
+    device: &Arc<Device>,
+    scene: &GpuScene,
+    case: &Case,
+    registry: &[&'static MethodInfo],
+    options: &RunOptions,
+) -> Result<Vec<Part>> {
+    let mut served = vec![Vec::new(); case.parts.len()];
+    for object in scene.scene.reflectors() {
+        if let Some(part) = case.part_for(&scene.scene.objects[object as usize].name) {
+            served[part].push(object);
+        }
+    }
+    let mut parts = Vec::with_capacity(served.len());
+    for (selected, reflectors) in case.parts.iter().zip(served) {
+        if reflectors.is_empty() {
+            let name = |o: ObjectId| scene.scene.objects[o as usize].name.as_str();
+            let names: Vec<_> = scene.scene.reflectors().into_iter().map(name).collect();
+            return Err(Error::Usage(format!(
+                "no reflector of scene {} matches `{}`; it has: {}",
+                scene.scene.name,
+                selected.reflectors,
+                names.join(", ")
+            )));
+        }
+        let info = registry.iter().find(|info| info.id == selected.method);
+        let made = info.and_then(|info| info.new.map(|new| (*info, new)));
+        let Some((info, new)) = made else {
+            return Err(Error::Usage(format!("{} does not run on a GPU", selected.method)));
+        };
+        let method = new(&Setup {
+            device,
+            scene,
+            variant: selected.variant,
+            values: &selected.values,
+            mode: options.record,
+            size: options.size,
+            reflectors: &reflectors,
+        })?;
+        parts.push(Part { info, method, reflectors, prepared: None });
+    }
+    Ok(parts)
+}
+
+/// What moved between two moments. Light and environment do not move yet.
+fn changes(scene: &Scene, before: &Moment, now: &Moment) -> Changes {
+    let mut changed = Changes::default();
+    for (object, (a, b)) in before.poses.iter().zip(&now.poses).enumerate() {
+        if a != b {
+            let mirror = scene.is_reflector(object as ObjectId);
+            changed.reflectors |= mirror;
+            changed.objects |= !mirror;
+        }
+    }
+    changed
+}
+
+/// The box of all eyes of the camera path.
+fn eyes(scene: &Scene) -> [Vec3; 2] {
+    let eyes = (0..scene.frames.max(1)).map(|frame| scene.camera.at(frame as f32).eye);
+    let start = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+    eyes.fold(start, |[low, high], eye| [low.min(eye), high.max(eye)])
 }

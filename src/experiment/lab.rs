@@ -125,8 +125,10 @@ impl<'m> Lab<'m> {
     /// # Errors
     /// [`Error::Validation`] where the validation layers said anything.
     pub fn close(self) -> Result<()> {
-        let messages = self.device.get().map(|device| device.validation_messages());
-        match messages.unwrap_or_default().as_slice() {
+        let log = self.device.get().map(|device| device.validation());
+        // The device goes first, so that leaks are heard too.
+        drop(self.device);
+        match log.map(|log| log.messages()).unwrap_or_default().as_slice() {
             [] => Ok(()),
             [first, rest @ ..] => Err(Error::Validation(format!(
                 "Vulkan validation: {first}{}",
@@ -160,7 +162,9 @@ fn truth_options(case: &Case) -> Result<Option<TruthOptions>> {
         [Selected { method: TRUTH, reflectors, values, .. }] if reflectors == "*" => {
             let analytic = values.is("spheres", "analytic");
             let spheres = if analytic { Spheres::Analytic } else { Spheres::Tessellated };
-            let (spp, bounces) = (values.u32("spp"), values.forced_u32("bounces"));
+            let (spp, bounces) = (values.u32("spp"), values.u32("bounces"));
+            // 0 is the scene's own.
+            let bounces = (bounces > 0).then_some(bounces);
             Ok(Some(TruthOptions { spp, bounces, spheres }))
         }
         _ if case.uses(TRUTH) => Err(Error::Usage(format!(

@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod clock;
 pub mod diff;
+mod dump_file;
 pub mod engine;
 pub mod evidence;
 pub mod frame_file;

@@ -81,14 +81,13 @@ fn of_frames<'t>(frames: impl Iterator<Item = &'t Vec<PassTime>>, prepare: bool)
     rows.collect()
 }
 
-/// Work a frame, mean over the timed frames.
-pub fn counters(timing: &Timing) -> BTreeMap<String, f64> {
-    let mut means = BTreeMap::new();
-    let part = 1.0 / timing.frames.len().max(1) as f64;
-    for (name, count) in timing.frames.iter().flat_map(|(_, times)| &times.counters) {
-        *means.entry(name.clone()).or_default() += part * *count as f64;
+/// Fills in the invocations that bursts do not count from a frame that did.
+pub fn add_invocations(rows: &mut [PassRow], counted: &FrameTimes) {
+    for row in rows {
+        let passes = if row.prepare { &counted.prepare } else { &counted.passes };
+        let passes = passes.iter().filter(|pass| pass.name == row.name);
+        row.invocations = row.invocations.max(passes.map(|pass| pass.invocations).sum());
     }
-    means
 }
 
 #[cfg(test)]
@@ -106,7 +105,7 @@ pub(super) mod tests {
             passes: vec![pass("a", ms, 0.0), pass("b", 1.0, ms), pass("a", ms, ms + 1.0)],
             frame_gpu_ms: 2.0 * ms + 1.0,
             prepare_bytes: 64,
-            counters: vec![("rays".into(), ms as u64)],
+            counters: Vec::new(),
         };
         let prepare = vec![pass("capture", 3.0, 0.0), pass("mip", 1.0, 3.0)];
         Timing {
@@ -136,6 +135,15 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn invocations_come_from_the_frame_that_counted_them() {
+        let mut rows = passes(&timing());
+        let counted = PassTime { invocations: 700, ..pass("b", 1.0, 0.0) };
+        add_invocations(&mut rows, &FrameTimes { passes: vec![counted], ..Default::default() });
+        let invocations: Vec<u64> = rows.iter().map(|row| row.invocations).collect();
+        assert_eq!(invocations, [10, 10, 20, 700]);
+    }
+
+    #[test]
     fn passes_sum_within_a_frame_and_spread_over_frames() {
         let rows = passes(&timing());
         let names: Vec<(&str, bool)> = rows.iter().map(|r| (r.name.as_str(), r.prepare)).collect();
@@ -145,6 +153,5 @@ pub(super) mod tests {
         let frame = frame_time(&timing(), 1).unwrap().median;
         let sum: f64 = rows.iter().filter(|r| !r.prepare).map(|r| r.gpu_ms.median).sum();
         assert_eq!(sum, frame);
-        assert_eq!(counters(&timing())["rays"], 3.0);
     }
 }

@@ -1,41 +1,33 @@
-//! gpu
+//! The Vulkan layer: a device, its objects, and frames made of named passes.
+//!
+//! Everything is written out: images stay in the GENERAL layout, one full barrier stands between
+//! two passes, and each pass is timed. Objects hold the [`Device`] they came from and free
+//! themselves on drop; a frame's submit waits, so nothing is freed while in use.
 
-use std::sync::Arc;
+mod buffer;
+mod command;
+mod device;
+mod frame;
+mod image;
+mod instance;
+mod pass;
+mod pipeline;
+mod profiler;
+mod shader;
 
-use crate::error::{Error, Result};
+pub use buffer::{Buffer, Slice};
+pub use device::{Device, DeviceInfo};
+pub use frame::{Dump, Frame, Recorded};
+pub use image::{Format, Image, Shape};
+pub use instance::{ValidationLog, list_devices};
+pub use pass::{Draw, Load, Pass};
+pub use pipeline::{Attachments, ComputePipeline, Depth, GraphicsPipeline, Stencil};
+pub use profiler::PassTime;
+pub use shader::{Binding, BindingKind, Defines, Shaders};
 
-/// The device a result was made on.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DeviceInfo {
-    pub name: String,
-    pub driver: String,
-    pub api: String,
-    pub is_software: bool,
-    pub index: usize,
-}
-
-pub struct Device;
-
-impl Device {
-    pub fn open(_select: &str, _validation: bool) -> Result<Arc<Device>> {
-        Err(Error::Device("not built yet".into()))
-    }
-
-    pub fn info(&self) -> DeviceInfo {
-        DeviceInfo {
-            name: String::new(),
-            driver: String::new(),
-            api: String::new(),
-            is_software: true,
-            index: 0,
-        }
-    }
-
-    pub fn validation_messages(&self) -> Vec<String> {
-        Vec::new()
-    }
-}
-
-pub fn list_devices() -> Result<Vec<DeviceInfo>> {
-    Err(Error::Device("not built yet".into()))
+/// Filters a pass can bind to a WGSL `sampler` variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sampler {
+    Nearest,
+    Linear,
 }

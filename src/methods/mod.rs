@@ -4,11 +4,50 @@
 //! `tests/methods_vs_truth.rs` and its figures.
 
 pub mod case;
+mod environment_map;
 pub mod nearest;
+mod none;
 pub mod params;
+mod planar_mirror;
+mod truth;
+
+use std::sync::Arc;
+
+use glam::Vec3;
 
 pub use case::{Case, Selected};
 pub use params::{Kind, Param, Values};
+
+use crate::error::Result;
+use crate::gpu::{Device, Frame};
+use crate::scene::ObjectId;
+use crate::stages::{GpuScene, RecordMode, ReflectionRecord, View};
+
+/// One paper's answer to "which scene point does this mirror pixel show?"
+pub trait ReflectionMethod {
+    /// Build what does not depend on the current eye: maps, octrees, impostors. Called before the
+    /// first frame, and again before a frame in which something in `MethodInfo::depends` moved.
+    fn prepare(&mut self, frame: &mut Frame, scene: &GpuScene, want: &Want) -> Result<()>;
+
+    /// Fill the record for one view, only where its reflectors are.
+    fn reflect(
+        &mut self,
+        frame: &mut Frame,
+        scene: &GpuScene,
+        view: &View,
+        record: &mut ReflectionRecord,
+    ) -> Result<()>;
+}
+
+/// What is asked of `prepare`.
+pub struct Want<'a> {
+    /// What moved since the last call; everything at the first.
+    pub changed: Changes,
+    /// Opposite corners of the box of all eyes to come, world.
+    pub eyes: [Vec3; 2],
+    /// The reflectors the method will be asked for.
+    pub reflectors: &'a [ObjectId],
+}
 
 /// What a method needs to be told about again when it moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,6 +58,17 @@ pub struct Changes {
     pub reflectors: bool,
     /// Light and environment.
     pub shading: bool,
+}
+
+impl Changes {
+    pub const ALL: Changes = Changes { objects: true, reflectors: true, shading: true };
+
+    /// Whether any kind of change is in both.
+    pub fn touches(self, other: Changes) -> bool {
+        self.objects && other.objects
+            || self.reflectors && other.reflectors
+            || self.shading && other.shading
+    }
 }
 
 /// Where a method looks for its answer.
@@ -33,6 +83,22 @@ pub enum Family {
     /// Rays against the scene.
     RayTracing,
 }
+
+/// What a method is made with.
+pub struct Setup<'a> {
+    pub device: &'a Arc<Device>,
+    pub scene: &'a GpuScene,
+    pub variant: &'a str,
+    pub values: &'a Values,
+    pub mode: RecordMode,
+    /// Width and height of the views to come, pixels.
+    pub size: [u32; 2],
+    /// The reflectors it will be asked for.
+    pub reflectors: &'a [ObjectId],
+}
+
+/// Makes a method for a case.
+pub type Make = fn(&Setup) -> Result<Box<dyn ReflectionMethod>>;
 
 /// A method's card: what `list`, `describe`, the case parser and the harness know of it.
 pub struct MethodInfo {
@@ -54,7 +120,10 @@ pub struct MethodInfo {
     pub passes: &'static [&'static str],
     /// Device-independent work it counts with `--record full`, in buffer order.
     pub counters: &'static [&'static str],
+    /// How it is made; `None` for the truth, which runs on the CPU.
+    pub new: Option<Make>,
 }
 
 /// The methods a user can name.
-pub static METHODS: &[MethodInfo] = &[];
+pub static METHODS: &[MethodInfo] =
+    &[truth::INFO, none::INFO, environment_map::INFO, planar_mirror::INFO];

@@ -17,6 +17,7 @@ use crate::geometry::{Camera, Mesh};
 pub use library::{SCENES_VARIABLE, list, load, scenes_dir};
 pub use material::{Environment, Image, Lighting, Material, Mirror, Pattern};
 pub use record::{FrameRecord, Ids, Lobe, ReflectionRecord, Source, Status};
+pub use select::matches_pattern;
 
 /// Index into [`Scene::objects`]; also what the images of object ids hold.
 pub type ObjectId = u32;

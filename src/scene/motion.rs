@@ -19,8 +19,13 @@ impl Scene {
     /// The box around all objects at a moment: smallest and largest world coordinates. A scene
     /// without objects has the origin.
     pub fn bounds(&self, moment: &Moment) -> (Vec3, Vec3) {
-        let boxes =
-            (0..self.objects.len() as ObjectId).map(|object| self.object_bounds(moment, object));
+        let all: Vec<_> = (0..self.objects.len() as ObjectId).collect();
+        self.bounds_of(moment, &all)
+    }
+
+    /// The box around some objects, as [`Scene::bounds`].
+    pub fn bounds_of(&self, moment: &Moment, objects: &[ObjectId]) -> (Vec3, Vec3) {
+        let boxes = objects.iter().map(|&object| self.object_bounds(moment, object));
         boxes.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).unwrap_or((Vec3::ZERO, Vec3::ZERO))
     }
 

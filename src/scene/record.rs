@@ -132,6 +132,8 @@ pub struct FrameRecord {
     pub colour: Vec<Vec3>,
     /// Distance from the camera's plane through the eye, metres; infinite on the background.
     pub depth: Vec<f32>,
+    /// Object seen directly; [`NO_OBJECT`] on the background.
+    pub object: Vec<ObjectId>,
     /// Reflector seen; [`NO_OBJECT`] elsewhere.
     pub reflector: Vec<ObjectId>,
     /// R: the reflector's surface point, where there is one.
@@ -149,6 +151,7 @@ impl FrameRecord {
             size,
             colour: vec![Vec3::ZERO; pixels],
             depth: vec![f32::INFINITY; pixels],
+            object: vec![NO_OBJECT; pixels],
             reflector: vec![NO_OBJECT; pixels],
             position: vec![Vec3::ZERO; pixels],
             normal: vec![Vec3::ZERO; pixels],

@@ -23,6 +23,21 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// The given objects by group, groups in the order they first appear.
+    pub fn groups(&self, objects: &[ObjectId]) -> Vec<(String, Vec<ObjectId>)> {
+        let mut groups: Vec<(String, Vec<ObjectId>)> = Vec::new();
+        for &id in objects {
+            let group = &self.objects[id as usize].group;
+            match groups.iter_mut().find(|(name, _)| name == group) {
+                Some((_, members)) => members.push(id),
+                None => groups.push((group.clone(), vec![id])),
+            }
+        }
+        groups
+    }
+}
+
 /// Whether `text` matches `pattern`: `*` stands for any characters, `?` for one.
 pub fn matches_pattern(pattern: &str, text: &str) -> bool {
     let mut pattern_chars = pattern.chars();

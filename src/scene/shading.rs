@@ -1,4 +1,4 @@
-//! The one shading function. Its twin on the GPU is `shaders/common/shading.wgsl`: the formulas,
+//! The one shading function. Its twin on the GPU is `shaders/bindings/scene.wgsl`: the formulas,
 //! and the order of their operations, are the same.
 
 use std::f32::consts::{PI, TAU};

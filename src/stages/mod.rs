@@ -1,1 +1,21 @@
-//! stages
+//! What every method shares on the GPU: the scene, the direct view, the reflectors' footprint, the
+//! captured map, the record, the fallback and the composite. Each is written here once, so two
+//! methods differ only in what they find.
+
+mod capture;
+mod composite;
+mod direct_view;
+mod fallback;
+mod footprint;
+mod record;
+mod scene;
+mod view;
+
+pub use capture::{Capture, CaptureStage};
+pub use composite::Composite;
+pub use direct_view::DirectView;
+pub use fallback::EnvironmentFallback;
+pub use footprint::Footprint;
+pub use record::{RecordMode, ReflectionRecord};
+pub use scene::GpuScene;
+pub use view::{CameraUniform, View};

@@ -80,6 +80,7 @@ fn encode(frame: &FrameRecord) -> Vec<u8> {
     bytes.extend_from_slice(bytemuck::bytes_of(&frame.size));
     bytes.extend_from_slice(bytemuck::cast_slice(&frame.colour));
     bytes.extend_from_slice(bytemuck::cast_slice(&frame.depth));
+    bytes.extend_from_slice(bytemuck::cast_slice(&frame.object));
     bytes.extend_from_slice(bytemuck::cast_slice(&frame.reflector));
     let mask = frame.reflector_pixels();
     append(&mut bytes, &frame.position, &mask);
@@ -113,6 +114,7 @@ fn decode(bytes: &[u8], size: [u32; 2]) -> Option<FrameRecord> {
     let pixels = frame.colour.len();
     frame.colour = body.values(pixels)?;
     frame.depth = body.values(pixels)?;
+    frame.object = body.values(pixels)?;
     frame.reflector = body.values(pixels)?;
     let mask = frame.reflector_pixels();
     body.scatter::<Vec3>(&mut frame.position, &mask)?;

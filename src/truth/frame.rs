@@ -14,6 +14,7 @@ const TILE: u32 = 16;
 struct Pixel {
     colour: Vec3,
     depth: f32,
+    object: ObjectId,
     reflector: ObjectId,
     position: Vec3,
     normal: Vec3,
@@ -27,6 +28,7 @@ impl Pixel {
     const BACKGROUND: Pixel = Pixel {
         colour: Vec3::ZERO,
         depth: f32::INFINITY,
+        object: NO_OBJECT,
         reflector: NO_OBJECT,
         position: Vec3::ZERO,
         normal: Vec3::ZERO,
@@ -94,6 +96,7 @@ impl Tracer<'_> {
         let seen = Pixel {
             colour: self.diffuse(&hit),
             depth: (camera.eye - hit.point).dot(back),
+            object: hit.object,
             ..Pixel::BACKGROUND
         };
         if self.mirror(&hit).is_none() {
@@ -126,6 +129,7 @@ fn pixels(corner: UVec2, end: UVec2) -> impl Iterator<Item = UVec2> {
 fn store(frame: &mut FrameRecord, index: usize, pixel: Pixel) {
     frame.colour[index] = pixel.colour;
     frame.depth[index] = pixel.depth;
+    frame.object[index] = pixel.object;
     frame.reflector[index] = pixel.reflector;
     frame.position[index] = pixel.position;
     frame.normal[index] = pixel.normal;

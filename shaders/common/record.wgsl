@@ -1,0 +1,53 @@
+// The words of the reflection record. Rust twin: scene/record.rs.
+#define_import_path common::record
+
+const NO_OBJECT: u32 = 0xffffffffu;
+
+const STATUS_MISSING: u32 = 0u;
+const STATUS_FOUND: u32 = 1u;
+const STATUS_ENVIRONMENT: u32 = 2u;
+
+const SOURCE_METHOD: u32 = 0u;
+const SOURCE_FALLBACK_ENVIRONMENT: u32 = 1u;
+
+// What the fourth channel of the radiance image holds.
+const ANSWER_MISSING: f32 = 0.0;
+const ANSWER_GIVEN: f32 = 1.0;
+const ANSWER_FLAGGED: f32 = 2.0;
+
+// One pixel's answer.
+struct Chain {
+    // Light arriving at the reflector point along the chain.
+    radiance: vec3<f32>,
+    // The scene point shown, w = 1; or a unit direction, w = 0.
+    point: vec4<f32>,
+    // Where the last bounce happened; w is the path length from R to the point.
+    last: vec4<f32>,
+    object: u32,
+    triangle: u32,
+    trace: u32,
+    order: u32,
+    status: u32,
+    source: u32,
+    flag: bool,
+}
+
+fn packed_bits(chain: Chain) -> u32 {
+    return chain.order | (chain.status << 12u) | (chain.source << 16u)
+        | (select(0u, 1u, chain.flag) << 20u);
+}
+
+fn packed_ids(chain: Chain) -> vec4<u32> {
+    return vec4(chain.object, chain.triangle, chain.trace, packed_bits(chain));
+}
+
+// Radiance with the answer in its fourth channel.
+fn packed_radiance(chain: Chain) -> vec4<f32> {
+    let answered = select(ANSWER_GIVEN, ANSWER_FLAGGED, chain.flag);
+    return vec4(chain.radiance, select(answered, ANSWER_MISSING, chain.status == STATUS_MISSING));
+}
+
+// A chain of one bounce off the reflector of this rank.
+fn trace_of(rank: u32) -> u32 {
+    return (rank + 1u) & 0xffu;
+}

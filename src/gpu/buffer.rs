@@ -1,0 +1,194 @@
+//! Buffers: device memory filled once, host memory written or read each frame.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::Allocation;
+
+use super::Device;
+use super::command::run_once;
+use crate::error::{Error, Result};
+
+/// A buffer and its memory.
+pub struct Buffer {
+    pub(super) raw: vk::Buffer,
+    /// Frames that use the buffer hold this too, so it outlives their submit.
+    pub(super) owner: Arc<Owner>,
+    name: String,
+    bytes: u64,
+}
+
+/// Frees the buffer when nobody needs it any more.
+pub(super) struct Owner {
+    device: Arc<Device>,
+    raw: vk::Buffer,
+    allocation: Mutex<Option<Allocation>>,
+    /// What the memory really takes, alignment included.
+    reserved: u64,
+}
+
+/// A range of a buffer that lives as long as the frame it was uploaded for.
+#[derive(Clone, Copy, Debug)]
+pub struct Slice {
+    pub(super) buffer: vk::Buffer,
+    pub(super) offset: u64,
+    pub(super) bytes: u64,
+}
+
+impl Buffer {
+    /// Device memory for storage, indirect arguments and indices; contents undefined.
+    ///
+    /// # Errors
+    /// [`Error::Device`] when it is larger than a shader can see, or memory is out.
+    pub fn storage(device: &Arc<Device>, name: &str, bytes: u64) -> Result<Buffer> {
+        let limit = device.storage_limit();
+        if bytes > limit {
+            return Err(Error::Device(format!(
+                "{name} needs {bytes} bytes in one storage buffer, but {} allows {limit}",
+                device.info().name
+            )));
+        }
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER
+            | vk::BufferUsageFlags::INDEX_BUFFER
+            | vk::BufferUsageFlags::INDIRECT_BUFFER
+            | vk::BufferUsageFlags::TRANSFER_SRC
+            | vk::BufferUsageFlags::TRANSFER_DST;
+        Self::new(device, name, bytes, usage, MemoryLocation::GpuOnly)
+    }
+
+    /// Device memory filled with `data` through a staging copy.
+    pub fn with_data<T: bytemuck::Pod>(
+        device: &Arc<Device>,
+        name: &str,
+        data: &[T],
+    ) -> Result<Buffer> {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        // Vulkan knows no empty buffer, and shaders bind whole words.
+        let size = (bytes.len() as u64).max(16);
+        let buffer = Self::storage(device, name, size)?;
+        let staging = Self::new(
+            device,
+            &format!("{name} staging"),
+            size,
+            vk::BufferUsageFlags::TRANSFER_SRC,
+            MemoryLocation::CpuToGpu,
+        )?;
+        staging.write(0, bytes)?;
+        run_once(device, name, |commands| {
+            let region = vk::BufferCopy::default().size(size);
+            // SAFETY: both buffers are `size` bytes long and alive until `run_once` has waited.
+            unsafe { device.raw.cmd_copy_buffer(commands, staging.raw, buffer.raw, &[region]) };
+        })?;
+        Ok(buffer)
+    }
+
+    /// Host-visible memory that a frame's uniforms and small arrays are written into.
+    pub(super) fn upload_ring(device: &Arc<Device>, bytes: u64) -> Result<Buffer> {
+        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::STORAGE_BUFFER;
+        Self::new(device, "frame uploads", bytes, usage, MemoryLocation::CpuToGpu)
+    }
+
+    /// Host-visible memory for copies back from the device.
+    pub(super) fn readback(device: &Arc<Device>, name: &str, bytes: u64) -> Result<Buffer> {
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        Self::new(device, name, bytes, usage, MemoryLocation::GpuToCpu)
+    }
+
+    fn new(
+        device: &Arc<Device>,
+        name: &str,
+        bytes: u64,
+        usage: vk::BufferUsageFlags,
+        location: MemoryLocation,
+    ) -> Result<Buffer> {
+        let info = vk::BufferCreateInfo::default().size(bytes.max(16)).usage(usage);
+        // SAFETY: a live device and a complete description.
+        let (raw, requirements) = unsafe {
+            let raw = device
+                .raw
+                .create_buffer(&info, None)
+                .map_err(|e| device.fail("vkCreateBuffer", name, e))?;
+            (raw, device.raw.get_buffer_memory_requirements(raw))
+        };
+        // Made before the memory is, so that an early return frees the handle.
+        let owner = Arc::new(Owner {
+            device: device.clone(),
+            raw,
+            allocation: Mutex::new(None),
+            reserved: requirements.size,
+        });
+        let allocation = device.allocate(name, requirements, location, true)?;
+        // SAFETY: the memory was allocated for these requirements and is bound once.
+        let bound =
+            unsafe { device.raw.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) };
+        *owner.lock() = Some(allocation);
+        bound.map_err(|e| device.fail("vkBindBufferMemory", name, e))?;
+        device.name(raw, name);
+        Ok(Buffer { raw, owner, name: name.to_owned(), bytes })
+    }
+
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub(super) fn whole(&self) -> Slice {
+        Slice { buffer: self.raw, offset: 0, bytes: self.bytes }
+    }
+
+    /// Write host-visible memory.
+    pub(super) fn write(&self, offset: u64, data: &[u8]) -> Result<()> {
+        let start = offset as usize;
+        let range = start..start + data.len();
+        let mut allocation = self.owner.lock();
+        let mapped = allocation.as_mut().and_then(|a| a.mapped_slice_mut());
+        match mapped.and_then(|m| m.get_mut(range)) {
+            Some(target) => {
+                target.copy_from_slice(data);
+                Ok(())
+            }
+            None => Err(Error::Device(format!("{}: no mapped memory to write", self.name))),
+        }
+    }
+
+    /// The contents of a readback buffer.
+    pub(super) fn contents<T: bytemuck::Pod>(&self) -> Result<Vec<T>> {
+        let allocation = self.owner.lock();
+        let mapped = allocation.as_ref().and_then(|a| a.mapped_slice());
+        mapped
+            .map(|m| bytemuck::pod_collect_to_vec(&m[..self.bytes as usize]))
+            .ok_or_else(|| Error::Device(format!("{}: no mapped memory to read", self.name)))
+    }
+
+    /// Copy the contents back to the host; waits.
+    pub fn read<T: bytemuck::Pod>(&self) -> Result<Vec<T>> {
+        let device = &self.owner.device;
+        let target = Self::readback(device, &format!("{} readback", self.name), self.bytes)?;
+        run_once(device, &self.name, |commands| {
+            let region = vk::BufferCopy::default().size(self.bytes);
+            // SAFETY: both buffers hold `bytes` bytes and outlive the wait in `run_once`.
+            unsafe { device.raw.cmd_copy_buffer(commands, self.raw, target.raw, &[region]) };
+        })?;
+        target.contents()
+    }
+}
+
+impl Owner {
+    fn lock(&self) -> MutexGuard<'_, Option<Allocation>> {
+        self.allocation.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Drop for Owner {
+    fn drop(&mut self) {
+        // SAFETY: frames hold an owner until their submit was waited for: nothing uses it now.
+        unsafe { self.device.raw.destroy_buffer(self.raw, None) };
+        if let Some(allocation) = self.lock().take() {
+            self.device.free(allocation, self.reserved);
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Environment mapping: one captured map per reflector group, looked up by direction alone
+//! (Blinn & Newell 1976; the six cube faces after Greene 1986; the lecture's algorithm).
+//!
+//! Patow 1995, section 1, shows two ways to index it: by the mirrored direction B (his figure 1),
+//! exact for an infinitely distant scene, and by the reflector point W (figure 2), which stands
+//! for a scene in touch with the reflector.
+
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable};
+
+use super::{Changes, Family, Kind, MethodInfo, Param, ReflectionMethod, Setup, Want};
+use crate::error::Result;
+use crate::gpu::{ComputePipeline, Device, Frame, Sampler};
+use crate::scene::ObjectId;
+use crate::stages::{Capture, CaptureStage, GpuScene, ReflectionRecord, View};
+
+pub const INFO: MethodInfo = MethodInfo {
+    id: "environment-map",
+    title: "Environment map",
+    paper: "Blinn & Newell 1976; Greene 1986; Patow 1995 section 1; lecture 18",
+    family: Family::ImageSpace,
+    depends: Changes::ALL,
+    flags: false,
+    variants: &["published"],
+    params: &[
+        Param {
+            name: "size",
+            kind: Kind::Integer { min: 4, max: 4096 },
+            defaults: &["512"],
+            needs: None,
+            doc: "texels along a cube face's side",
+        },
+        Param {
+            name: "index",
+            kind: Kind::Choice(&["direction", "surface"]),
+            defaults: &["direction"],
+            needs: None,
+            doc: "look up by the mirrored direction B, or by the reflector point W (Patow fig. 2)",
+        },
+    ],
+    limits: "no parallax: exact only for a scene infinitely far away; no self-reflection",
+    passes: &[
+        "environment-map/capture-background",
+        "environment-map/capture",
+        "footprint/clear-list",
+        "footprint/list",
+        "environment-map/reflect",
+    ],
+    counters: &["lookups"],
+    new: Some(new),
+};
+
+/// WGSL `Params` of `shaders/environment_map/reflect.wgsl`.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub struct Params {
+    centre: [f32; 3],
+    size: u32,
+}
+
+struct EnvironmentMap {
+    device: Arc<Device>,
+    stage: CaptureStage,
+    reflect: ComputePipeline,
+    size: u32,
+    /// The reflectors of each group, and the map they share.
+    maps: Vec<(Vec<ObjectId>, Capture)>,
+}
+
+fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
+    let mut defines = setup.mode.defines();
+    if setup.values.is("index", "surface") {
+        defines.push(("INDEX_SURFACE", 1));
+    }
+    let file = "environment_map/reflect.wgsl";
+    Ok(Box::new(EnvironmentMap {
+        device: setup.device.clone(),
+        stage: CaptureStage::new(setup.device)?,
+        reflect: ComputePipeline::new(setup.device, file, &defines)?,
+        size: setup.values.u32("size"),
+        maps: Vec::new(),
+    }))
+}
+
+impl ReflectionMethod for EnvironmentMap {
+    fn prepare(&mut self, frame: &mut Frame, scene: &GpuScene, want: &Want) -> Result<()> {
+        if self.maps.is_empty() {
+            for (group, objects) in scene.scene.groups(want.reflectors) {
+                let name = format!("environment map of {group}");
+                self.maps.push((objects, Capture::new(&self.device, &name, self.size)?));
+            }
+        }
+        for (objects, map) in &mut self.maps {
+            // "Rendered from the centroid of the reflector" (Martin & Popescu 2004, section 2.1).
+            let (low, high) = scene.scene.bounds_of(scene.moment(), objects);
+            let centre = 0.5 * (low + high);
+            self.stage.capture(frame, scene, "environment-map", map, centre, objects)?;
+        }
+        Ok(())
+    }
+
+    fn reflect(
+        &mut self,
+        frame: &mut Frame,
+        scene: &GpuScene,
+        view: &View,
+        record: &mut ReflectionRecord,
+    ) -> Result<()> {
+        for (objects, map) in &self.maps {
+            view.list_pixels(frame, scene, objects)?;
+            let params = Params { centre: map.centre.to_array(), size: map.size };
+            let pass = frame.pass("environment-map/reflect").compute(&self.reflect);
+            record
+                .bind(view.bind(scene.bind(pass)))
+                .uniform("params", &params)
+                .sample("capture_radiance", &map.radiance)
+                .sample("capture_point", &map.point)
+                .optional()
+                .sample("capture_ids", &map.ids)
+                .optional()
+                .sampler("linear_filter", Sampler::Linear)
+                .indirect(&view.footprint.pixels)?;
+        }
+        Ok(())
+    }
+}

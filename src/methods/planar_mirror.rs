@@ -1,0 +1,131 @@
+//! Flat mirrors: the scene mirrored in their plane and drawn through the stencil
+//! (Diefenbach & Badler 1997; McReynolds & Blythe 1997). Exact, so it anchors the measures.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
+use crate::error::{Error, Result};
+use crate::gpu::{Attachments, ComputePipeline, Depth, Frame, GraphicsPipeline, Load, Stencil};
+use crate::scene::{Moment, ObjectId, Scene};
+use crate::stages::{Footprint, GpuScene, ReflectionRecord, View};
+
+pub const INFO: MethodInfo = MethodInfo {
+    id: "planar-mirror",
+    title: "Planar mirror",
+    paper: "Diefenbach & Badler 1997; McReynolds & Blythe 1997",
+    family: Family::FeedForward,
+    depends: Changes { objects: false, reflectors: false, shading: false },
+    flags: false,
+    variants: &["published"],
+    params: &[],
+    limits: "flat reflectors only; one bounce",
+    passes: &[
+        "footprint/clear-list",
+        "footprint/list",
+        "planar-mirror/background",
+        "planar-mirror/mirrored",
+    ],
+    counters: &[],
+    new: Some(new),
+};
+
+/// How far a flat mirror's vertices may lie from its plane, as a share of its size.
+const FLATNESS: f32 = 1e-5;
+
+/// WGSL `Plane` of `shaders/planar_mirror/mirrored.wgsl`.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub struct PlaneUniform {
+    normal: [f32; 3],
+    offset: f32,
+    object: u32,
+    pad: [u32; 3],
+}
+
+struct PlanarMirror {
+    background: ComputePipeline,
+    mirrored: GraphicsPipeline,
+}
+
+fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
+    let scene = &*setup.scene.scene;
+    for &object in setup.reflectors {
+        plane(scene, setup.scene.moment(), object)?;
+    }
+    let defines = setup.mode.defines();
+    let attachments = Attachments {
+        colours: setup.mode.formats(),
+        depth_stencil: true,
+        depth: Depth::Nearest,
+        stencil: Stencil::Within,
+        views: 0,
+    };
+    let (device, folder) = (setup.device, "planar_mirror");
+    Ok(Box::new(PlanarMirror {
+        background: ComputePipeline::new(device, &format!("{folder}/background.wgsl"), &defines)?,
+        mirrored: GraphicsPipeline::new(
+            device,
+            &format!("{folder}/mirrored.wgsl"),
+            &defines,
+            &attachments,
+        )?,
+    }))
+}
+
+/// The plane of a flat reflector: unit normal, and its dot product with the plane's points.
+fn plane(scene: &Scene, moment: &Moment, object: ObjectId) -> Result<(Vec3, f32)> {
+    let mesh = scene.mesh_of(object);
+    let pose = &moment.poses[object as usize];
+    let normal = pose.transform_vector3(mesh.normals[0]).normalize();
+    let points = || mesh.positions.iter().map(|&p| pose.transform_point3(p));
+    let (low, high) = points().fold((f32::MAX, f32::MIN), |(low, high), p| {
+        let height = p.dot(normal);
+        (low.min(height), high.max(height))
+    });
+    let (corner, opposite) = scene.bounds_of(moment, &[object]);
+    if high - low > FLATNESS * corner.distance(opposite) {
+        return Err(Error::Usage(format!(
+            "planar-mirror needs flat reflectors; `{}` is {:.3} m deep across its plane",
+            scene.objects[object as usize].name,
+            high - low
+        )));
+    }
+    Ok((normal, 0.5 * (low + high)))
+}
+
+impl ReflectionMethod for PlanarMirror {
+    fn prepare(&mut self, _: &mut Frame, _: &GpuScene, _: &Want) -> Result<()> {
+        Ok(())
+    }
+
+    fn reflect(
+        &mut self,
+        frame: &mut Frame,
+        scene: &GpuScene,
+        view: &View,
+        record: &mut ReflectionRecord,
+    ) -> Result<()> {
+        view.list_pixels(frame, scene, view.reflectors)?;
+        let pass = frame.pass("planar-mirror/background").compute(&self.background);
+        record.bind(view.bind(scene.bind(pass))).indirect(&view.footprint.pixels)?;
+        for &object in view.reflectors {
+            let (mut normal, mut offset) = plane(&scene.scene, scene.moment(), object)?;
+            // A mirror shows the side its viewer is on.
+            if view.camera.eye().dot(normal) < offset {
+                (normal, offset) = (-normal, -offset);
+            }
+            let uniform = PlaneUniform { normal: normal.to_array(), offset, object, pad: [0; 3] };
+            let pass = frame.pass("planar-mirror/mirrored").graphics(&self.mirrored);
+            let pass = record.attach(view.bind(scene.bind(pass)));
+            let depth = Load::Clear([0.0; 4]);
+            pass.uniform("plane", &uniform)
+                .depth_stencil(&view.footprint.depth_stencil, depth, Load::Keep)
+                .draw(|draw| {
+                    draw.stencil_reference(Footprint::stencil_of(object));
+                    scene.draw(draw, |other| other != object);
+                })?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,137 @@
+//! The reflection record on the GPU.
+
+use std::sync::Arc;
+
+use glam::{Vec3, Vec4};
+use half::f16;
+
+use crate::error::Result;
+use crate::gpu::{Buffer, Device, Format, Frame, Image, Load, Pass, Shape};
+use crate::scene::{self, Ids};
+
+/// What is written into the record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RecordMode {
+    /// Radiance only: what a renderer needs; for timing.
+    Radiance,
+    /// Radiance and the evidence: for accuracy.
+    Full,
+}
+
+impl RecordMode {
+    /// The shader definitions of this mode.
+    pub fn defines(self) -> Vec<(&'static str, u32)> {
+        match self {
+            RecordMode::Radiance => Vec::new(),
+            RecordMode::Full => vec![("RECORD_FULL", 1)],
+        }
+    }
+
+    /// Formats of the record's images as colour attachments, in the order of `@location`s.
+    pub fn formats(self) -> &'static [Format] {
+        const ALL: [Format; 4] =
+            [Format::Rgba16Float, Format::Rgba32Float, Format::Rgba32Float, Format::Rgba32Uint];
+        match self {
+            RecordMode::Radiance => &ALL[..1],
+            RecordMode::Full => &ALL,
+        }
+    }
+}
+
+/// Counters a method may have.
+const COUNTERS: usize = 16;
+
+/// The images a method fills, see [`scene::ReflectionRecord`].
+pub struct ReflectionRecord {
+    /// Radiance; the fourth channel says whether and how surely the pixel was answered.
+    pub radiance: Image,
+    evidence: Option<Evidence>,
+}
+
+struct Evidence {
+    point: Image,
+    last: Image,
+    ids: Image,
+    /// Device-independent work, in the order of `MethodInfo::counters`.
+    counters: Buffer,
+}
+
+impl ReflectionRecord {
+    pub fn new(device: &Arc<Device>, size: [u32; 2], mode: RecordMode) -> Result<Self> {
+        let image = |name: &str, format| Image::new(device, name, format, size, Shape::Flat);
+        let evidence = match mode {
+            RecordMode::Radiance => None,
+            RecordMode::Full => Some(Evidence {
+                point: image("record point", Format::Rgba32Float)?,
+                last: image("record last point", Format::Rgba32Float)?,
+                ids: image("record ids", Format::Rgba32Uint)?,
+                counters: Buffer::storage(device, "record counters", 4 * COUNTERS as u64)?,
+            }),
+        };
+        Ok(ReflectionRecord { radiance: image("record radiance", Format::Rgba16Float)?, evidence })
+    }
+
+    /// Nothing found anywhere, nothing counted.
+    pub fn clear(&self, frame: &mut Frame) -> Result<()> {
+        let zero = Load::Clear([0.0; 4]);
+        let mut images = vec![("radiance", &self.radiance, zero)];
+        if let Some(e) = &self.evidence {
+            let missing = Ids::MISSING;
+            let words = [missing.object, missing.triangle, missing.trace, missing.bits];
+            images.push(("point", &e.point, zero));
+            images.push(("last", &e.last, zero));
+            images.push(("ids", &e.ids, Load::ClearWords(words)));
+            frame.pass("record/clear-counters").fill(&[&e.counters], 0)?;
+        }
+        frame.pass("record/clear").clear(&images)
+    }
+
+    /// Bind it to a compute pass.
+    pub fn bind<'f>(&'f self, pass: Pass<'f>) -> Pass<'f> {
+        let pass = pass.store("record_radiance", &self.radiance);
+        match &self.evidence {
+            None => pass,
+            Some(e) => pass
+                .store("record_point", &e.point)
+                .store("record_last", &e.last)
+                .store("record_ids", &e.ids)
+                .buffer("counters", &e.counters)
+                .optional(),
+        }
+    }
+
+    /// Attach it to a graphics pass, keeping what is there.
+    pub fn attach<'f>(&'f self, pass: Pass<'f>) -> Pass<'f> {
+        let pass = pass.colour("record_radiance", &self.radiance, Load::Keep);
+        match &self.evidence {
+            None => pass,
+            Some(e) => pass
+                .colour("record_point", &e.point, Load::Keep)
+                .colour("record_last", &e.last, Load::Keep)
+                .colour("record_ids", &e.ids, Load::Keep),
+        }
+    }
+
+    /// Copy it to the host. Without evidence only the radiance is filled.
+    pub fn read(&self) -> Result<scene::ReflectionRecord> {
+        let radiance = self.radiance.read::<[f16; 4]>()?;
+        let mut record = scene::ReflectionRecord::missing(radiance.len());
+        record.radiance = radiance.iter().map(|&[r, g, b, _]| half_colour([r, g, b])).collect();
+        if let Some(e) = &self.evidence {
+            record.point = e.point.read::<Vec4>()?;
+            record.last = e.last.read::<Vec4>()?;
+            record.ids = e.ids.read::<Ids>()?;
+        }
+        Ok(record)
+    }
+
+    /// The counters, as the last frame left them; none without evidence.
+    pub fn counters(&self) -> Result<Vec<u32>> {
+        self.evidence.as_ref().map_or(Ok(Vec::new()), |e| e.counters.read())
+    }
+}
+
+/// A colour of half floats.
+pub(super) fn half_colour(c: [f16; 3]) -> Vec3 {
+    Vec3::from(c.map(f16::to_f32))
+}

@@ -1,0 +1,277 @@
+//! The scene on the GPU: geometry, materials and images once, poses each frame.
+
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Affine3A, Vec3};
+use half::f16;
+
+use crate::error::Result;
+use crate::gpu::{Buffer, Device, Draw, Frame, Pass, Slice};
+use crate::scene::{Environment, Material, Moment, ObjectId, Pattern, Scene};
+
+/// WGSL `Vertex` of `shaders/bindings/scene.wgsl`; object space.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub struct Vertex {
+    position: [f32; 3],
+    u: f32,
+    normal: [f32; 3],
+    v: f32,
+}
+
+/// WGSL `Object`.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub struct ObjectEntry {
+    rows: [[f32; 4]; 3],
+    material: u32,
+    rank: u32,
+    selected: u32,
+    pad: u32,
+}
+
+/// WGSL `Material`.
+#[derive(Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct MaterialEntry {
+    first: [f32; 3],
+    pattern: u32,
+    second: [f32; 3],
+    line: f32,
+    tint: [f32; 3],
+    reflectance: f32,
+    size: [f32; 2],
+    image: u32,
+    pad: u32,
+}
+
+/// WGSL `ImageInfo`.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub struct ImageEntry {
+    offset: u32,
+    width: u32,
+    height: u32,
+    pad: u32,
+}
+
+/// WGSL `Light`.
+#[derive(Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct LightUniform {
+    ambient: [f32; 3],
+    environment: u32,
+    towards_sun: [f32; 3],
+    image: u32,
+    sun: [f32; 3],
+    pad0: u32,
+    zenith: [f32; 3],
+    pad1: u32,
+    horizon: [f32; 3],
+    pad2: u32,
+    nadir: [f32; 3],
+    pad3: u32,
+}
+
+/// A scene uploaded to a device.
+pub struct GpuScene {
+    pub scene: Arc<Scene>,
+    vertices: Buffer,
+    indices: Buffer,
+    materials: Buffer,
+    images: Buffer,
+    texels: Buffer,
+    light: LightUniform,
+    /// First index and index count of each object.
+    ranges: Vec<(u32, u32)>,
+    moment: Moment,
+    /// This frame's poses, uploaded by [`GpuScene::pose`].
+    objects: Option<Slice>,
+}
+
+impl GpuScene {
+    /// # Errors
+    /// [`crate::error::Error::Device`] with the numbers when a buffer is beyond the device's limits.
+    pub fn new(device: &Arc<Device>, scene: &Arc<Scene>) -> Result<GpuScene> {
+        let mut vertices = Vec::with_capacity(scene.meshes.iter().map(|m| m.positions.len()).sum());
+        let mut indices: Vec<u32> = Vec::new();
+        let mut mesh_ranges = Vec::with_capacity(scene.meshes.len());
+        for mesh in &scene.meshes {
+            let base = vertices.len() as u32;
+            let first = indices.len() as u32;
+            let attributes = mesh.positions.iter().zip(&mesh.normals).zip(&mesh.uvs);
+            vertices.extend(attributes.map(|((p, n), uv)| Vertex {
+                position: p.to_array(),
+                u: uv.x,
+                normal: n.to_array(),
+                v: uv.y,
+            }));
+            indices.extend(mesh.triangles.iter().flatten().map(|i| i + base));
+            mesh_ranges.push((first, indices.len() as u32 - first));
+        }
+        let materials: Vec<_> = scene.materials.iter().map(material_entry).collect();
+        let (images, texels) = image_entries(scene);
+        Ok(GpuScene {
+            vertices: Buffer::with_data(device, "scene vertices", &vertices)?,
+            indices: Buffer::with_data(device, "scene indices", &indices)?,
+            materials: Buffer::with_data(device, "scene materials", &materials)?,
+            images: Buffer::with_data(device, "scene images", &images)?,
+            texels: Buffer::with_data(device, "scene texels", &texels)?,
+            light: light_uniform(scene),
+            ranges: scene.objects.iter().map(|o| mesh_ranges[o.mesh]).collect(),
+            moment: scene.at(0),
+            objects: None,
+            scene: scene.clone(),
+        })
+    }
+
+    /// The moment this frame shows.
+    pub fn moment(&self) -> &Moment {
+        &self.moment
+    }
+
+    /// Upload the poses of a moment for the frame being recorded.
+    pub fn pose(&mut self, frame: &mut Frame, moment: &Moment) -> Result<()> {
+        self.moment = moment.clone();
+        self.objects = Some(self.upload_objects(frame, &[])?);
+        Ok(())
+    }
+
+    /// The objects with some reflectors marked as selected, for passes meant for those alone.
+    pub fn selection(&self, frame: &mut Frame, reflectors: &[ObjectId]) -> Result<Slice> {
+        self.upload_objects(frame, reflectors)
+    }
+
+    fn upload_objects(&self, frame: &mut Frame, selected: &[ObjectId]) -> Result<Slice> {
+        let mut rank = 0;
+        let entries: Vec<_> = (0..self.scene.objects.len())
+            .map(|index| {
+                let id = index as ObjectId;
+                let entry = ObjectEntry {
+                    rows: rows(&self.moment.poses[index]),
+                    material: self.scene.objects[index].material as u32,
+                    rank,
+                    selected: u32::from(selected.contains(&id)),
+                    pad: 0,
+                };
+                rank += u32::from(self.scene.is_reflector(id));
+                entry
+            })
+            .collect();
+        frame.upload(&entries)
+    }
+
+    /// Bind what a shader wants of the scene.
+    pub fn bind<'f>(&self, pass: Pass<'f>) -> Pass<'f> {
+        let pass = pass
+            .buffer("vertices", &self.vertices)
+            .optional()
+            .buffer("materials", &self.materials)
+            .optional()
+            .buffer("images", &self.images)
+            .optional()
+            .buffer("texels", &self.texels)
+            .optional()
+            .uniform("light", &self.light)
+            .optional();
+        match self.objects {
+            Some(objects) => pass.slice("objects", objects).optional(),
+            None => pass,
+        }
+    }
+
+    /// Draw the objects a filter lets through; the instance index is the object id.
+    pub fn draw(&self, draw: &mut Draw, wanted: impl Fn(ObjectId) -> bool) {
+        for (index, _) in self.ranges.iter().enumerate() {
+            let object = index as ObjectId;
+            if wanted(object) {
+                self.draw_object(draw, object);
+            }
+        }
+    }
+
+    pub fn draw_object(&self, draw: &mut Draw, object: ObjectId) {
+        let (first, count) = self.ranges[object as usize];
+        draw.indexed(&self.indices, first, count, object);
+    }
+}
+
+/// Rows of an affine transform.
+fn rows(pose: &Affine3A) -> [[f32; 4]; 3] {
+    let [x, y, z] = [pose.matrix3.x_axis, pose.matrix3.y_axis, pose.matrix3.z_axis];
+    let t = pose.translation;
+    [[x.x, y.x, z.x, t.x], [x.y, y.y, z.y, t.y], [x.z, y.z, z.z, t.z]]
+}
+
+fn material_entry(material: &Material) -> MaterialEntry {
+    let mut entry = MaterialEntry { size: [1.0; 2], ..Default::default() };
+    match material.pattern {
+        Pattern::Colour(colour) => entry.first = colour.to_array(),
+        Pattern::Checker { even, odd, size } => {
+            entry.pattern = 1;
+            entry.first = even.to_array();
+            entry.second = odd.to_array();
+            entry.size = size.to_array();
+        }
+        Pattern::Grid { ground, lines, size, line } => {
+            entry.pattern = 2;
+            entry.first = ground.to_array();
+            entry.second = lines.to_array();
+            entry.size = size.to_array();
+            entry.line = line;
+        }
+        Pattern::Image { image, size } => {
+            entry.pattern = 3;
+            entry.image = image as u32;
+            entry.size = size.to_array();
+        }
+    }
+    if let Some(mirror) = material.mirror {
+        entry.tint = mirror.tint.to_array();
+        entry.reflectance = mirror.reflectance;
+    }
+    entry
+}
+
+/// All images behind one another, two words a texel: halves r, g and b.
+fn image_entries(scene: &Scene) -> (Vec<ImageEntry>, Vec<[u32; 2]>) {
+    let mut texels: Vec<[u32; 2]> = Vec::new();
+    let mut entries = Vec::with_capacity(scene.images.len());
+    for image in &scene.images {
+        let offset = texels.len() as u32;
+        entries.push(ImageEntry { offset, width: image.width, height: image.height, pad: 0 });
+        texels.extend(image.texels.iter().map(|t| {
+            let half = |v: f32| u32::from(f16::from_f32(v).to_bits());
+            [half(t.x) | half(t.y) << 16, half(t.z)]
+        }));
+    }
+    (entries, texels)
+}
+
+fn light_uniform(scene: &Scene) -> LightUniform {
+    let light = &scene.lighting;
+    let mut uniform = LightUniform {
+        ambient: light.ambient.to_array(),
+        towards_sun: light.towards_sun.to_array(),
+        sun: light.sun.to_array(),
+        ..Default::default()
+    };
+    let colours = |u: &mut LightUniform, zenith: Vec3, horizon: Vec3, nadir: Vec3| {
+        u.zenith = zenith.to_array();
+        u.horizon = horizon.to_array();
+        u.nadir = nadir.to_array();
+    };
+    match scene.environment {
+        Environment::Colour(colour) => colours(&mut uniform, colour, colour, colour),
+        Environment::Gradient { zenith, horizon, nadir } => {
+            uniform.environment = 1;
+            colours(&mut uniform, zenith, horizon, nadir);
+        }
+        Environment::LatLong { image } => {
+            uniform.environment = 2;
+            uniform.image = image as u32;
+        }
+    }
+    uniform
+}
