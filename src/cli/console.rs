@@ -33,10 +33,6 @@ impl Console {
         &self.progress
     }
 
-    pub fn json(&self) -> bool {
-        self.json
-    }
-
     /// What the user asked to be told.
     pub fn report(&self, text: &str) -> Result<()> {
         if self.json {

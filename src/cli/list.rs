@@ -67,10 +67,7 @@ fn list_devices(console: &Console) -> Result<()> {
         let kind = if device.is_software { "software" } else { "hardware" };
         let index = device.index.to_string();
         rows.push(row([&index, &device.name, &device.driver, &device.api, kind]));
-        console.object(&json!({
-            "index": device.index, "name": device.name, "driver": device.driver,
-            "api": device.api, "is_software": device.is_software,
-        }))?;
+        console.object(&device)?;
     }
     console.report(&table(&rows))
 }

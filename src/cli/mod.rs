@@ -1,9 +1,15 @@
 //! The command line. Exit codes are [`Error::exit_code`]'s; 2 also covers the flags themselves.
 
 mod args;
+mod bench;
 mod console;
+mod diff;
 mod doctor;
 mod list;
+mod probe;
+mod profile;
+mod render;
+mod work;
 
 use std::process::ExitCode;
 
@@ -29,6 +35,18 @@ enum Command {
     List(list::ListArgs),
     /// A method's paper, parameters, limits and passes
     Describe(list::DescribeArgs),
+    /// Frames of one case as EXR and PNG
+    Render(render::Args),
+    /// Where the time of a frame goes, pass by pass
+    Profile(profile::Args),
+    /// Cases timed against each other and compared with the truth
+    Bench(bench::BenchArgs),
+    /// One mirror pixel: where it is, what it shows in truth and by each case
+    Probe(probe::Args),
+    /// The benchmark a file describes, whole or in shards
+    Sweep(bench::SweepArgs),
+    /// Two frames or two runs, side by side
+    Diff(diff::Args),
 }
 
 /// Runs the command line with the built-in methods and `extra` ones.
@@ -61,6 +79,12 @@ impl Command {
             Command::Describe(args) => {
                 list::describe(&args.method, methods, &Console::new(args.json))
             }
+            Command::Render(args) => render::render(args, methods),
+            Command::Profile(args) => profile::profile(args, methods),
+            Command::Bench(args) => bench::bench(args, methods),
+            Command::Probe(args) => probe::run(args, methods),
+            Command::Sweep(args) => bench::sweep(args, methods),
+            Command::Diff(args) => diff::run(args),
         }
     }
 }

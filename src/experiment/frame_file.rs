@@ -3,7 +3,8 @@
 //! Channels: `R,G,B` picture and `reflection.R/G/B` radiance along the chain, half; `Z` depth,
 //! `shown.X/Y/Z/W` point, `last.X/Y/Z/W` last bounce and path length, `position.X/Y/Z` and
 //! `normal.X/Y/Z` of the reflector, float; `shown.object`, `.triangle`, `.trace`, `.order`,
-//! `.lobe`, `.status`, `.source`, `.flag`, `object.id` seen directly and `reflector.id`, uint. ZIP, linear Rec.709.
+//! `.lobe`, `.status`, `.source`, `.flag`, `object.id` seen directly and `reflector.id`, uint. ZIP,
+//! linear Rec.709.
 
 use std::collections::HashMap;
 use std::io;
@@ -262,6 +263,7 @@ mod tests {
             frame.colour[i] = Vec3::new(x, x + 0.25, x + 0.5);
             frame.depth[i] = 1.1 * x;
             frame.reflector[i] = i as u32 * 3;
+            frame.object[i] = i as u32 + 7;
             frame.position[i] = Vec3::new(0.1 * x, -x, 7.7);
             frame.normal[i] = Vec3::new(x, 1.0, 0.3).normalize();
             frame.record.radiance[i] = Vec3::splat(x / 8.0);

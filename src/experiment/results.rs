@@ -51,13 +51,15 @@ pub struct Row {
     pub device: DeviceCard,
     /// The times are a processor's, not a GPU's: compare counters and slopes, not milliseconds.
     pub software_timing: bool,
-    /// Pixels a reflector covers, mean over the frames compared or else those timed.
-    pub reflector_pixels: f64,
-    /// Null where nothing was timed, as are the next ones.
+    /// Pixels a reflector covers: mean over the frames compared, or else those of the middle frame
+    /// timed. Null where neither was.
+    pub reflector_pixels: Option<f64>,
+    /// Null where nothing was timed.
     pub prepare: Option<Prepare>,
+    /// Null where nothing was timed.
     pub frame_gpu_ms: Option<FrameTime>,
     pub passes: Vec<PassRow>,
-    /// Device-independent work a frame, named by the method; mean over frames.
+    /// Device-independent work a frame, named by the method; mean over the frames compared.
     pub counters: BTreeMap<String, f64>,
     /// Null where nothing was compared.
     pub accuracy: Option<Accuracy>,
@@ -180,9 +182,9 @@ impl SceneCard {
     }
 }
 
-impl From<DeviceInfo> for DeviceCard {
-    fn from(info: DeviceInfo) -> Self {
-        let DeviceInfo { name, driver, api, is_software, .. } = info;
+impl From<&DeviceInfo> for DeviceCard {
+    fn from(info: &DeviceInfo) -> Self {
+        let DeviceInfo { name, driver, api, is_software, .. } = info.clone();
         DeviceCard { name, driver, api, is_software }
     }
 }
@@ -281,7 +283,7 @@ pub(super) mod tests {
                 is_software: true,
             },
             software_timing: true,
-            reflector_pixels: 1000.0,
+            reflector_pixels: Some(1000.0),
             prepare: Some(Prepare { calls: 1, gpu_ms: 4.0, cpu_ms: 0.5, bytes: 1 << 20 }),
             frame_gpu_ms: Some(FrameTime {
                 median: 2.0,
@@ -374,6 +376,7 @@ pub(super) mod tests {
             limits: "",
             passes: &[],
             counters: &[],
+            new: None,
         };
         const fn param(name: &'static str, kind: Kind) -> crate::methods::Param {
             crate::methods::Param { name, kind, defaults: &["1"], needs: None, doc: "" }
@@ -385,5 +388,17 @@ pub(super) mod tests {
         let (method, variant, params) = columns(vec![part("ball"), part("*")]);
         assert_eq!((method.as_str(), variant.as_str()), ("m;m", "published;published"));
         assert!(params.contains_key("ball/steps") && params.contains_key("*/tau"));
+    }
+    /// `BLESS=1` writes the file, and fails so that nobody blesses unawares.
+    #[test]
+    fn the_committed_schema_is_current() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/paper-figures/results.schema.json");
+        let current = format!("{:#}\n", Row::schema());
+        if std::env::var_os("BLESS").is_some() {
+            std::fs::write(path, &current).unwrap();
+            panic!("blessed {path}");
+        }
+        let committed = std::fs::read_to_string(path).unwrap_or_default();
+        assert!(committed == current, "{path} is stale: run the test again with BLESS=1");
     }
 }

@@ -5,6 +5,7 @@
 use super::nearest::valid_names;
 use super::{MethodInfo, Param, Values};
 use crate::error::{Error, Result};
+use crate::scene::matches_pattern;
 
 /// A parsed case: one selection, or a hybrid's list of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +81,7 @@ impl Case {
 
     /// Which part serves a reflector of this name.
     pub fn part_for(&self, reflector: &str) -> Option<usize> {
-        self.parts.iter().position(|part| matches(&part.reflectors, reflector))
+        self.parts.iter().position(|part| matches_pattern(&part.reflectors, reflector))
     }
 
     /// Whether any part uses this method.
@@ -208,25 +209,4 @@ fn check_meaning(
         }
     }
     Ok(())
-}
-
-/// Whether `name` matches a pattern of `*` (any text) and `?` (any one character).
-pub fn matches(pattern: &str, name: &str) -> bool {
-    let (pattern, name): (Vec<char>, Vec<char>) =
-        (pattern.chars().collect(), name.chars().collect());
-    // reachable[j]: the pattern so far matches the first j characters.
-    let mut reachable = vec![false; name.len() + 1];
-    reachable[0] = true;
-    for symbol in pattern {
-        if symbol == '*' {
-            let first = reachable.iter().position(|r| *r).unwrap_or(reachable.len());
-            reachable[first..].fill(true);
-        } else {
-            for j in (1..=name.len()).rev() {
-                reachable[j] = reachable[j - 1] && (symbol == '?' || symbol == name[j - 1]);
-            }
-            reachable[0] = false;
-        }
-    }
-    reachable[name.len()]
 }
