@@ -10,8 +10,8 @@ use std::collections::BinaryHeap;
 
 use glam::{UVec2, Vec2};
 
-use super::field::{Cell, Field, Key, Segment, Target};
-use super::root::{Guess, on_triangle, polish, traced_guess};
+use super::field::{Cell, Corner, Field, Key, Segment, Target};
+use super::root::{Guess, at_rim, centre, on_triangle, polish, traced_guess};
 use crate::geometry::optics::reflect;
 use crate::truth::{Chain, Tracer};
 
@@ -21,8 +21,11 @@ pub(super) const REACH_PX: f32 = 256.0;
 /// Roots nearer than this to one already found are that one.
 const SAME_ROOT_PX: f32 = 0.5;
 
-/// A pixel's own neighbourhood, where the dense image has gaps, pixels.
-const NEIGHBOURHOOD_PX: f32 = 2.0;
+/// Nearer than this, in diagonals of a cell, a target is not interpolated towards.
+const CLOSE_DIAGONALS: f32 = 4.0;
+
+/// Up to this far away, the surroundings of pixels at the rim of a chain are traced if need be.
+const TRACED_RIM_PX: f32 = 4.0;
 
 /// What is asked of one pixel.
 pub(super) struct Query<'a> {
@@ -44,8 +47,8 @@ impl Query<'_> {
     /// Pixels from the pixel's centre to the nearest root; `None` when none is within
     /// [`REACH_PX`]. `queue` is scratch space.
     pub fn displacement(&self, queue: &mut Queue) -> Option<f32> {
-        let centre = self.centre();
-        let mut best = self.root_nearby();
+        let centre = centre(self.pixel);
+        let mut best = None;
         queue.clear();
         self.enqueue(queue, self.field.root());
         while let Some(Reverse((bits, cell))) = queue.pop() {
@@ -59,7 +62,7 @@ impl Query<'_> {
                 }
                 continue;
             }
-            for guess in self.guesses(cell) {
+            for guess in self.guesses(cell).into_iter().flatten() {
                 let known = best.is_some_and(|root| {
                     let distance = guess.at.distance(centre);
                     root.distance(guess.at) < SAME_ROOT_PX || distance > root.distance(centre)
@@ -76,41 +79,53 @@ impl Query<'_> {
         best.map(|root| root.distance(centre)).filter(|&distance| distance <= REACH_PX)
     }
 
-    fn centre(&self) -> Vec2 {
-        self.pixel.as_vec2() + 0.5
-    }
-
     fn enqueue(&self, queue: &mut Queue, cell: Cell) {
-        let distance = self.field.distance(cell, self.centre());
+        let distance = self.field.distance(cell, centre(self.pixel));
         if distance <= REACH_PX && self.field.may_reach(cell, self.key, self.target) {
             queue.push(Reverse((distance.to_bits(), cell)));
         }
     }
 
-    /// At the rim of a reflector the pixel's neighbours are not all there to interpolate; its
-    /// surroundings are traced instead.
-    fn root_nearby(&self) -> Option<Vec2> {
-        if self.field.is_interior(self.pixel, self.key) {
-            return None;
+    /// Where roots may be in a cell: on the two triangles of its corners, or around each of them
+    /// where the chain's pixels end. With the target so close that it is seen in all directions
+    /// there is no sense in interpolating, and the surroundings are traced.
+    fn guesses(&self, cell: Cell) -> [Option<Guess>; 4] {
+        let corners = self.field.corners(cell, self.key);
+        match corners {
+            [Some(a), Some(b), Some(c), Some(d)] if self.is_close([a, b, c, d]) => {
+                let middle = 0.5 * (centre(a.0) + centre(c.0));
+                [self.traced_guess(middle), None, None, None]
+            }
+            [Some(a), Some(b), Some(c), Some(d)] => {
+                let linear = |corners| on_triangle(self.target, corners);
+                [linear([a, b, c]), linear([a, c, d]), None, None]
+            }
+            rim => rim.map(|corner| self.rim_guess(corner?.0)),
         }
-        let trace = |position| self.trace(position);
-        let guess = traced_guess(self.target, self.centre(), trace)?;
-        polish(guess, trace).filter(|root| root.distance(self.centre()) < NEIGHBOURHOOD_PX)
     }
 
-    /// Roots on the two triangles of a cell, or on the one that three corners make.
-    fn guesses(&self, cell: Cell) -> impl Iterator<Item = Guess> {
-        let [a, b, c, d] = self.field.corners(cell.x, cell.y, self.key);
-        let triangles = match (a, b, c, d) {
-            (Some(a), Some(b), Some(c), Some(d)) => [Some([a, b, c]), Some([a, c, d])],
-            (Some(a), Some(b), Some(c), None) => [Some([a, b, c]), None],
-            (Some(a), Some(b), None, Some(d)) => [Some([a, b, d]), None],
-            (Some(a), None, Some(c), Some(d)) => [Some([a, c, d]), None],
-            (None, Some(b), Some(c), Some(d)) => [Some([b, c, d]), None],
-            _ => [None, None],
-        };
-        let target = self.target;
-        triangles.into_iter().flatten().filter_map(move |corners| on_triangle(target, corners))
+    /// A guess at a pixel where its chain ends: from its neighbours, or by tracing where they do
+    /// not help and the pixel is near enough for a root there to matter.
+    fn rim_guess(&self, pixel: UVec2) -> Option<Guess> {
+        if !self.field.rim_may_reach(pixel, self.target) {
+            return None;
+        }
+        let near = centre(pixel).distance(centre(self.pixel)) <= TRACED_RIM_PX;
+        let neighbours = self.field.with_neighbours(pixel);
+        neighbours
+            .and_then(|corners| at_rim(self.target, corners))
+            .or_else(|| near.then(|| self.traced_guess(centre(pixel)))?)
+    }
+
+    fn traced_guess(&self, at: Vec2) -> Option<Guess> {
+        traced_guess(self.target, at, |position| self.trace(position))
+    }
+
+    /// Whether the target is within a few diagonals of a cell's mirrors.
+    fn is_close(&self, [a, b, c, d]: [Corner; 4]) -> bool {
+        let diagonal = a.1.origin.distance(c.1.origin).max(b.1.origin.distance(d.1.origin));
+        let Target::Point(point) = self.target else { return false };
+        point.distance(a.1.origin) < CLOSE_DIAGONALS * diagonal
     }
 
     /// The last segment of the path through a position, as long as it meets the chain's mirrors.

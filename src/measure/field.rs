@@ -4,6 +4,8 @@
 //! pyramid bounds the segments below a node by a sphere of origins and a cone of directions, so
 //! that large parts of the image, from which no ray can reach a point, are passed over at once.
 
+use std::f32::consts::PI;
+
 use glam::{UVec2, Vec2, Vec3, Vec4};
 
 use crate::truth::Chain;
@@ -64,7 +66,7 @@ fn angle(a: Vec3, b: Vec3) -> f32 {
 #[derive(Clone, Copy, Debug)]
 struct Node {
     key: Key,
-    /// Sphere around the origins; infinite where nothing can be ruled out.
+    /// Sphere around the origins.
     centre: Vec3,
     radius: f32,
     /// Cone around the directions.
@@ -88,8 +90,8 @@ pub(super) struct Cell {
     pub y: u32,
 }
 
-/// Corners of a cell: where they are in the image and what lies there.
-pub(super) type Corner = (Vec2, Segment);
+/// A pixel's centre and the segment there.
+pub(super) type Corner = (UVec2, Segment);
 
 /// Segments after `order` bounces, over a whole image.
 pub(super) struct Field {
@@ -102,6 +104,10 @@ pub(super) struct Field {
 /// How far beyond its corners a cell's bounds reach: what lies between pixel centres may bend
 /// outwards, and roots are accepted a little outside their cell.
 const INFLATION: f32 = 1.6;
+
+/// The same at the rim of a chain's pixels, in differences to their neighbours: up to a pixel lies
+/// outside, and towards a silhouette directions change ever faster.
+const RIM_INFLATION: f32 = 3.0;
 
 impl Field {
     /// From the chain at every pixel of an image.
@@ -131,45 +137,68 @@ impl Field {
     }
 
     fn leaf(&self, x: u32, y: u32) -> Node {
-        let Some(key) = self.key_of_cell(x, y) else { return EMPTY };
-        let segments = self.corners(x, y, key).into_iter().flatten().map(|(_, segment)| segment);
-        let count = segments.clone().count() as f32;
-        let centre = segments.clone().map(|s| s.origin).sum::<Vec3>() / count;
-        let axis = segments.clone().map(|s| s.direction).sum::<Vec3>().normalize_or_zero();
-        let radius = segments.clone().map(|s| s.origin.distance(centre)).fold(0.0, f32::max);
-        let angle = segments.map(|s| angle(s.direction, axis)).fold(0.0, f32::max);
+        let pixels = cell_pixels(x, y);
+        let keys = pixels.map(|pixel| self.keys[self.index(pixel)]);
+        if keys.iter().any(|&key| key != keys[0] || key == NONE) {
+            let rim = pixels.into_iter().filter(|&pixel| self.keys[self.index(pixel)] != NONE);
+            return Node::around(rim.map(|pixel| self.rim(pixel)));
+        }
+        let corners = pixels.into_iter().map(|pixel| {
+            let Segment { origin, direction } = self.segments[self.index(pixel)];
+            Node { key: keys[0], centre: origin, radius: 0.0, axis: direction, angle: 0.0 }
+        });
+        let Node { radius, angle, .. } = Node::around(corners.clone());
         // The last digits of directions are noise.
-        Node { key, centre, radius: INFLATION * radius, axis, angle: INFLATION * angle + 1e-5 }
+        let (radius, angle) = (INFLATION * radius, INFLATION * angle + 1e-5);
+        Node { radius, angle, ..Node::around(corners) }
     }
 
-    /// The chain that at least three corners of a cell share: enough for a triangle.
-    fn key_of_cell(&self, x: u32, y: u32) -> Option<Key> {
-        let at = |dx: u32, dy: u32| self.keys[self.index(x + dx, y + dy)];
-        let keys = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
-        let shared = |key: &Key| *key != NONE && keys.iter().filter(|k| *k == key).count() >= 3;
-        keys[..2].iter().copied().find(shared)
+    /// Bounds of what surrounds a pixel of a chain.
+    fn rim(&self, pixel: UVec2) -> Node {
+        let index = self.index(pixel);
+        let (key, Segment { origin, direction }) = (self.keys[index], self.segments[index]);
+        let low = pixel.saturating_sub(UVec2::ONE);
+        let high = (pixel + 1).min(self.size - 1);
+        let around = (low.y..=high.y)
+            .flat_map(|y| (low.x..=high.x).map(move |x| UVec2::new(x, y)))
+            .map(|pixel| self.index(pixel))
+            .filter(|&index| self.keys[index] == key)
+            .map(|index| self.segments[index]);
+        let radius = around.clone().map(|s| s.origin.distance(origin)).fold(0.0, f32::max);
+        let spread = around.map(|s| angle(s.direction, direction)).fold(1e-3, f32::max);
+        let (radius, angle) = (RIM_INFLATION * radius, RIM_INFLATION * spread);
+        Node { key, centre: origin, radius, axis: direction, angle }
     }
 
-    fn index(&self, x: u32, y: u32) -> usize {
-        (y * self.size.x + x) as usize
+    fn index(&self, pixel: UVec2) -> usize {
+        (pixel.y * self.size.x + pixel.x) as usize
     }
 
     /// Corners of a level-0 cell around its rim, `None` where another chain is.
-    pub fn corners(&self, x: u32, y: u32, key: Key) -> [Option<Corner>; 4] {
-        [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[dx, dy]| {
-            let (x, y) = (x + dx, y + dy);
-            let index = self.index(x, y);
-            let centre = UVec2::new(x, y).as_vec2() + 0.5;
-            (self.keys[index] == key).then(|| (centre, self.segments[index]))
+    pub fn corners(&self, cell: Cell, key: Key) -> [Option<Corner>; 4] {
+        cell_pixels(cell.x, cell.y).map(|pixel| {
+            let index = self.index(pixel);
+            (self.keys[index] == key).then(|| (pixel, self.segments[index]))
         })
     }
 
-    /// Whether all pixels around the one at `at` continue its chain.
-    pub fn is_interior(&self, at: UVec2, key: Key) -> bool {
-        let inside = at.cmpge(UVec2::ONE).all() && (at + 1).cmplt(self.size).all();
-        inside
-            && (at.y - 1..=at.y + 1)
-                .all(|y| (at.x - 1..=at.x + 1).all(|x| self.keys[self.index(x, y)] == key))
+    /// A pixel with a neighbour beside and one above or below it on the same chain.
+    pub fn with_neighbours(&self, pixel: UVec2) -> Option<[Corner; 3]> {
+        let key = self.keys[self.index(pixel)];
+        let on_chain = |x: Option<u32>, y: Option<u32>| {
+            let pixel = UVec2::new(x?, y?);
+            let exists = pixel.cmplt(self.size).all();
+            (exists && self.keys[self.index(pixel)] == key).then_some(pixel)
+        };
+        let UVec2 { x, y } = pixel;
+        let beside = on_chain(Some(x + 1), Some(y)).or(on_chain(x.checked_sub(1), Some(y)))?;
+        let above = on_chain(Some(x), Some(y + 1)).or(on_chain(Some(x), y.checked_sub(1)))?;
+        Some([pixel, beside, above].map(|pixel| (pixel, self.segments[self.index(pixel)])))
+    }
+
+    /// Whether around a pixel at the rim of its chain a path may end at the target.
+    pub fn rim_may_reach(&self, pixel: UVec2, target: Target) -> bool {
+        self.rim(pixel).may_reach(target)
     }
 
     /// The node everything hangs below.
@@ -205,20 +234,46 @@ impl Field {
         if node.key != key && node.key != MIXED {
             return false;
         }
+        node.may_reach(target)
+    }
+}
+
+/// The pixels at the corners of a cell, around its rim.
+fn cell_pixels(x: u32, y: u32) -> [UVec2; 4] {
+    [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[dx, dy]| UVec2::new(x + dx, y + dy))
+}
+
+impl Node {
+    /// Bounds of all of `nodes`.
+    fn around(nodes: impl Iterator<Item = Node> + Clone) -> Node {
+        let Some(first) = nodes.clone().next() else { return EMPTY };
+        let count = nodes.clone().count() as f32;
+        let key = if nodes.clone().all(|node| node.key == first.key) { first.key } else { MIXED };
+        let centre = nodes.clone().map(|node| node.centre).sum::<Vec3>() / count;
+        let axis = nodes.clone().map(|node| node.axis).sum::<Vec3>().normalize_or_zero();
+        let reach = |node: Node| node.centre.distance(centre) + node.radius;
+        let spread = |node: Node| angle(node.axis, axis) + node.angle;
+        let radius = nodes.clone().map(reach).fold(0.0, f32::max);
+        // Axes that cancel bound nothing.
+        let angle = if axis == Vec3::ZERO { PI } else { nodes.map(spread).fold(0.0, f32::max) };
+        Node { key, centre, radius, axis, angle }
+    }
+
+    fn may_reach(&self, target: Target) -> bool {
         let (towards, spread) = match target {
             Target::Direction(direction) => (direction, 0.0),
             Target::Point(point) => {
-                let away = point - node.centre;
+                let away = point - self.centre;
                 let distance = away.length();
-                if distance <= node.radius {
+                if distance <= self.radius {
                     return true;
                 }
-                (away / distance, (node.radius / distance).asin())
+                (away / distance, (self.radius / distance).asin())
             }
         };
         // Seen from the target, origins lie within `spread` of the centre.
-        let reach = node.angle + spread;
-        reach >= std::f32::consts::PI || angle(towards, node.axis) <= reach
+        let reach = self.angle + spread;
+        reach >= PI || angle(towards, self.axis) <= reach
     }
 }
 
@@ -237,18 +292,6 @@ impl Level {
             .filter(|&[x, y]| x < self.size.x && y < self.size.y)
             .map(|[x, y]| self.nodes[(y * self.size.x + x) as usize])
             .filter(|node| node.key != NONE);
-        let count = children.clone().count();
-        let Some(first) = children.clone().next() else { return EMPTY };
-        let key =
-            if children.clone().all(|node| node.key == first.key) { first.key } else { MIXED };
-        let centre = children.clone().map(|node| node.centre).sum::<Vec3>() / count as f32;
-        let axis = children.clone().map(|node| node.axis).sum::<Vec3>().normalize_or_zero();
-        let radius = |node: Node| node.centre.distance(centre) + node.radius;
-        let spread = |node: Node| angle(node.axis, axis) + node.angle;
-        let angle = children.clone().map(spread).fold(0.0, f32::max);
-        let radius = children.map(radius).fold(0.0, f32::max);
-        // Axes that cancel bound nothing.
-        let angle = if axis == Vec3::ZERO { std::f32::consts::PI } else { angle };
-        Node { key, centre, radius, axis, angle }
+        Node::around(children)
     }
 }

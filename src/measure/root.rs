@@ -1,7 +1,7 @@
 //! Positions of the image whose mirrored path ends at a target: found on triangles of pixel
 //! centres, polished by tracing.
 
-use glam::{Mat2, Vec2, Vec3};
+use glam::{Mat2, UVec2, Vec2, Vec3};
 
 use super::field::{Corner, Segment, Target};
 
@@ -9,8 +9,12 @@ use super::field::{Corner, Segment, Target};
 /// and what one triangle gives away its neighbour may not take.
 const MARGIN: f32 = 0.25;
 
+/// How far from a rim pixel its linear root may lie: towards a silhouette directions change with
+/// the root of the distance, so a root less than a pixel outside seems more than two away.
+const RIM_PX: f32 = 2.5;
+
 /// Steps shorter than this end the polishing, pixels; under the 0.05 the measure promises.
-const TOLERANCE_PX: f32 = 0.02;
+const TOLERANCE_PX: f32 = 0.005;
 
 /// Longest step of the polishing, pixels.
 const LONGEST_STEP_PX: f32 = 2.0;
@@ -52,7 +56,22 @@ pub(super) struct Guess {
 
 /// The root of the miss on a triangle of pixel centres, taken to be linear between them.
 pub(super) fn on_triangle(target: Target, corners: [Corner; 3]) -> Option<Guess> {
-    let [(p0, a), (p1, b), (p2, c)] = corners;
+    let (guess, weights) = linear(target, corners)?;
+    let inside = weights.min_element() >= -MARGIN && weights.element_sum() <= 1.0 + MARGIN;
+    inside.then_some(guess)
+}
+
+/// The first of the corners, a pixel at the rim of its chain, if the root may lie around it.
+pub(super) fn at_rim(target: Target, corners: [Corner; 3]) -> Option<Guess> {
+    let at = centre(corners[0].0);
+    let (guess, _) = linear(target, corners)?;
+    (guess.at.distance(at) < RIM_PX).then_some(Guess { at, ..guess })
+}
+
+/// The root of the miss if it were linear as on a triangle, and the weights of its second and
+/// third corner there.
+fn linear(target: Target, corners: [Corner; 3]) -> Option<(Guess, Vec2)> {
+    let [(p0, a), (p1, b), (p2, c)] = corners.map(|(pixel, segment)| (centre(pixel), segment));
     let mean = (a.direction + b.direction + c.direction).try_normalize()?;
     let miss = Miss::new(target, mean);
     let [m0, m1, m2] = [miss.of(&a)?, miss.of(&b)?, miss.of(&c)?];
@@ -61,13 +80,14 @@ pub(super) fn on_triangle(target: Target, corners: [Corner; 3]) -> Option<Guess>
         return None;
     }
     let weights = by_weights.inverse() * -m0;
-    let inside = weights.min_element() >= -MARGIN && weights.element_sum() <= 1.0 + MARGIN;
     let by_pixels = Mat2::from_cols(p1 - p0, p2 - p0);
-    inside.then(|| Guess {
-        at: p0 + by_pixels * weights,
-        miss,
-        slope: by_weights * by_pixels.inverse(),
-    })
+    let at = p0 + by_pixels * weights;
+    Some((Guess { at, miss, slope: by_weights * by_pixels.inverse() }, weights))
+}
+
+/// Where a pixel's centre is in the image.
+pub(super) fn centre(pixel: UVec2) -> Vec2 {
+    pixel.as_vec2() + 0.5
 }
 
 /// The slope at a position, from traced neighbours on whichever side continues the chain.
@@ -108,7 +128,7 @@ pub(super) fn polish(guess: Guess, trace: impl Fn(Vec2) -> Option<Segment>) -> O
         }
         // A step off the reflector, or onto another chain, is tried again shorter.
         let full = full.clamp_length_max(LONGEST_STEP_PX);
-        let (step, next) = [1.0, 0.5, 0.25].into_iter().find_map(|share| {
+        let (step, next) = [1.0, 0.5, 0.25, 0.125].into_iter().find_map(|share| {
             let step = share * full;
             Some((step, traced(at + step)?))
         })?;
