@@ -18,9 +18,10 @@ NAMES = ("+x", "−x", "+y", "−y", "+z", "−z")
 
 
 def draw(figure):
-    run = render("lecture", "environment-map", dump="environment-map/capture*")
+    run = render("lecture", "environment-map", size="1280x640", dump="environment-map/capture")
     figure.cite(run)
-    faces = images.to_srgb(cube_faces(run.files))
+    dumped = run.files / "dump" / "environment-map" / "capture" / "radiance.exr"
+    faces = images.to_srgb(cube_faces(dumped))
     size = faces.shape[1]
     cross = np.ones((3 * size, 4 * size, 3))
     plot, axis = plt.subplots(figsize=(6.4, 4.95), layout="constrained")

@@ -12,6 +12,7 @@ import matplotlib.pyplot as plt
 from mirrorfigures import images, main, render
 from mirrorfigures.evidence import object_ids, seen_directly, seen_in_mirrors
 
+SIZE = "1280x640"  # twice as wide as high, as the plan's opening of 100 degrees asks
 OBJECTS = ("object-1", "object-2", "object-3", "object-4")
 LECTURE = {
     "directly": {"object-3", "object-4"},
@@ -21,7 +22,7 @@ LECTURE = {
 
 
 def draw(figure):
-    truth, mapped = render("lecture", "truth"), render("lecture", "environment-map")
+    truth, mapped = (render("lecture", case, size=SIZE) for case in ("truth", "environment-map"))
     figure.cite(truth, mapped)
     # The row of the map names the scene's objects just as the truth's does.
     ids = {name: i for name, i in object_ids(mapped.row).items() if name in OBJECTS}

@@ -73,14 +73,10 @@ def read_frame(path: Path) -> Frame:
     )
 
 
-def cube_faces(folder: Path) -> np.ndarray:
+def cube_faces(path: Path) -> np.ndarray:
     """The six faces of a dumped cube map, 6 x size x size x 3, in the order +X -X +Y -Y +Z -Z.
 
-    `--dump` writes one EXR per image, `<pass>/<variable>.exr`, a layered image as `face0.R` to
-    `face5.B`. The first file below `folder` with those channels is the cube's colour.
+    `--dump` writes `dump/<pass>/<variable>.exr`, a cube as layers `face0` to `face5`.
     """
-    for path in sorted(folder.rglob("*.exr")):
-        channels = read_channels(path)
-        if all(f"face{face}.{c}" in channels for face in range(6) for c in "RGB"):
-            return np.stack([_stack(channels, f"face{face}.", "RGB") for face in range(6)])
-    raise FileNotFoundError(f"no EXR with channels face0.R to face5.B below {folder}")
+    channels = read_channels(path)
+    return np.stack([_stack(channels, f"face{face}.", "RGB") for face in range(6)])

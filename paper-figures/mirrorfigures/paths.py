@@ -1,11 +1,11 @@
-"""Where things are. Environment: MIRRORBENCH_BIN and MIRRORBENCH_FIGURES override the last two."""
+"""Where things are. MIRRORBENCH_SCENES, MIRRORBENCH_BIN and MIRRORBENCH_FIGURES override."""
 
 import os
 from pathlib import Path
 
 FIGURES = Path(__file__).resolve().parents[1]
 ROOT = FIGURES.parent
-SCENES = ROOT / "scenes"
+SCENES = Path(os.environ.get("MIRRORBENCH_SCENES", ROOT / "scenes"))
 VENDOR = FIGURES / "vendor"
 
 

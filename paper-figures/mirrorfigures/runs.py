@@ -61,9 +61,11 @@ def _last_number(stem: str) -> int | None:
 
 
 def render(scene: str, case: str, *, frame: int = 0, size: str = "1280x720", dump: str = "") -> Run:
-    """Draw one frame of one case with its evidence; the run has one row and one frame."""
+    """Draw one frame of one case with its evidence, judged against the truth unless it is the truth;
+    the run has one row and one frame."""
+    judged = 0 if re.split("[@:]", case)[0] == "truth" else 1
     arguments = ["render", "--scene", scene, "--case", case, "--frame", str(frame)]
-    arguments += ["--size", size, "--record", "full"]
+    arguments += ["--size", size, "--record", "full", "--truth-frames", str(judged)]
     return _run(arguments + (["--dump", dump] if dump else []))
 
 

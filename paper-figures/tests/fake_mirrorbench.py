@@ -4,7 +4,6 @@ tested without a Vulkan device. A mirror sphere on a chequered floor among diffu
 """
 
 import argparse
-import fnmatch
 import json
 import os
 import sys
@@ -158,7 +157,7 @@ def main() -> int:
     parser.add_argument("--frame", type=int, default=0)
     parser.add_argument("--out", type=Path)
     parser.add_argument("--dump", default="")
-    for ignored in ("--frames", "--repeat", "--record"):
+    for ignored in ("--frames", "--repeat", "--record", "--truth-frames"):
         parser.add_argument(ignored)
     parser.add_argument("--json", action="store_true")
     args = parser.parse_args()
@@ -175,8 +174,8 @@ def main() -> int:
     for case in args.case or []:
         if args.command == "render":
             save(args.out / f"frame-{args.frame:04}.exr", draw(case, *size, args.frame))
-            if args.dump and fnmatch.fnmatch("environment-map/capture", args.dump):
-                save(args.out / "dump" / "environment-map" / "capture" / "colour.exr", cube(128))
+            if args.dump == "environment-map/capture":
+                save(args.out / "dump" / args.dump / "radiance.exr", cube(128))
         print(json.dumps(row(args.scene, case, size, args.frame, args.command == "bench")))
     return 0
 
