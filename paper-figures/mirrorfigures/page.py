@@ -8,6 +8,7 @@ import jinja2
 
 from . import paths, registry
 from .figure import SOFTWARE_MARK
+from .runs import SCHEMA_VERSION
 
 
 def write(out: Path, failed: dict[str, str]) -> Path:
@@ -40,12 +41,15 @@ def write(out: Path, failed: dict[str, str]) -> Path:
 
 
 def _figures(out: Path) -> list[dict]:
-    """The figures on disk whose scripts still exist, in the registry's order."""
+    """The figures on disk whose scripts still exist, in the registry's order; those drawn from rows
+    of another version are left out until they are drawn again."""
     found = []
     for script in registry.scripts():
-        record = out / script.paper / f"{script.name}.json"
-        if record.is_file():
-            found.append(json.loads(record.read_text(encoding="utf-8")))
+        path = out / script.paper / f"{script.name}.json"
+        if path.is_file():
+            record = json.loads(path.read_text(encoding="utf-8"))
+            if all(row["schema_version"] == SCHEMA_VERSION for row in record["rows"]):
+                found.append(record)
     return found
 
 

@@ -33,7 +33,7 @@ def comparison(figure: Figure, truth: Run, label: str, method: Run) -> None:
     plot, axes = plt.subplots(
         2,
         3,
-        figsize=(3 * COLUMN_IN, COLUMN_IN * (height / width + 0.5) + 0.95),
+        figsize=(3 * COLUMN_IN, COLUMN_IN * (height / width + 0.5) + 1.3),
         gridspec_kw={"height_ratios": [height / width, 0.5]},
         layout="constrained",
     )
