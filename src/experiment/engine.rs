@@ -1,5 +1,13 @@
 //! One case, set up on one device for one scene and size: draws frames, reads them back, times them.
 
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::error::{Error, Result};
+use crate::gpu::Device;
+use crate::methods::{Case, MethodInfo};
+use crate::scene::{FrameRecord, Moment, Scene};
+
 /// Time of one pass of one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassTime {
@@ -45,4 +53,43 @@ pub enum Fallback {
     None,
     Environment,
     Ray,
+}
+
+/// How an engine is set up.
+#[derive(Clone, Debug)]
+pub struct RunOptions {
+    pub size: [u32; 2],
+    pub record: RecordMode,
+    pub fallback: Fallback,
+    /// Read shaders from here instead of from the program.
+    pub shader_dir: Option<PathBuf>,
+    /// Write the stored images of passes that match the pattern into the folder.
+    pub dump: Option<(String, PathBuf)>,
+    pub seed: u64,
+}
+
+pub struct Engine;
+
+impl Engine {
+    pub fn new(
+        _device: &Arc<Device>,
+        _scene: &Scene,
+        _case: &Case,
+        _registry: &[&'static MethodInfo],
+        _options: &RunOptions,
+    ) -> Result<Engine> {
+        Err(Error::Device("not built yet".into()))
+    }
+
+    pub fn frame(&mut self, _moment: &Moment, _cut: bool) -> Result<(FrameRecord, FrameTimes)> {
+        Err(Error::Device("not built yet".into()))
+    }
+
+    pub fn burst(&mut self, _moments: &[Moment]) -> Result<Vec<FrameTimes>> {
+        Err(Error::Device("not built yet".into()))
+    }
+
+    pub fn pixels(&self) -> u64 {
+        0
+    }
 }

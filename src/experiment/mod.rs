@@ -1,3 +1,17 @@
 //! Running a case on a scene, and the results it leaves.
 
+pub mod bench;
+pub mod clock;
+pub mod diff;
 pub mod engine;
+pub mod evidence;
+pub mod frame_file;
+pub mod lab;
+pub mod output;
+pub mod probe;
+pub mod results;
+pub mod results_file;
+mod rows;
+pub mod sweep;
+pub mod timing;
+pub mod trace;

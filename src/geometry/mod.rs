@@ -1,7 +1,13 @@
 //! Pure maths: rays, laws of reflection, shapes and their meshes, the camera. No scene, no GPU.
 
+pub mod alhazen;
+pub mod bezier;
+pub mod bvh;
 pub mod camera;
+pub mod cube;
 pub mod mesh;
+pub mod optics;
+pub mod shapes;
 
 pub use camera::{Camera, Projection};
 pub use mesh::Mesh;

@@ -1,1 +1,12 @@
-//! measure
+//! How far a record is from the truth, and how sure a timing is. Compares two CPU records and knows
+//! no method.
+
+pub mod accuracy;
+pub mod colour;
+mod displacement;
+mod field;
+mod judge;
+mod root;
+pub mod statistics;
+
+pub use accuracy::{Accuracy, BadShare, Class, Flip, Maps, Quantiles, accuracy};

@@ -4,6 +4,7 @@
 //! `tests/methods_vs_truth.rs` and its figures.
 
 pub mod case;
+pub mod nearest;
 pub mod params;
 
 pub use case::{Case, Selected};

@@ -16,20 +16,21 @@ pub struct Material {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Pattern {
     Colour(Vec3),
-    /// Squares of side `size` (texture coordinate units).
+    /// Rectangles of sides `size`, `even` at the origin's upper right (texture coordinate units).
     Checker {
         even: Vec3,
         odd: Vec3,
         size: Vec2,
     },
-    /// Lines of width `line` at every multiple of `size` (texture coordinate units).
+    /// Lines of width `line` centred on every multiple of `size` (texture coordinate units).
     Grid {
         ground: Vec3,
         lines: Vec3,
         size: Vec2,
         line: f32,
     },
-    /// Index into [`crate::scene::Scene::images`]; one image covers `size` texture coordinate units.
+    /// Index into [`crate::scene::Scene::images`]; one image covers `size` texture coordinate units,
+    /// its lower left corner at the origin.
     Image {
         image: usize,
         size: Vec2,

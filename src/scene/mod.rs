@@ -3,12 +3,18 @@
 //! A [`Scene`] comes from a TOML file ([`load`]); a [`Moment`] is one frame of it. Neither knows
 //! how it will be drawn: [`crate::truth`] traces it, [`crate::stages`] uploads it.
 
+mod file;
+mod library;
 pub mod material;
+mod motion;
 pub mod record;
+mod select;
+pub mod shading;
 
 use glam::{Affine3A, Vec3};
 
 use crate::geometry::{Camera, Mesh};
+pub use library::{SCENES_VARIABLE, list, load, scenes_dir};
 pub use material::{Environment, Image, Lighting, Material, Mirror, Pattern};
 pub use record::{FrameRecord, Ids, Lobe, ReflectionRecord, Source, Status};
 

@@ -155,4 +155,9 @@ impl FrameRecord {
             record: ReflectionRecord::missing(pixels),
         }
     }
+
+    /// The pixels that see a reflector, in rising order.
+    pub fn reflector_pixels(&self) -> Vec<usize> {
+        (0..self.reflector.len()).filter(|&pixel| self.reflector[pixel] != NO_OBJECT).collect()
+    }
 }

@@ -1,1 +1,112 @@
-//! truth
+//! The truth: a Whitted ray tracer on the CPU that fills the same record as every method.
+//!
+//! It traces the triangles the GPU draws, with the same interpolated normals and the same shading,
+//! so that what differs between its record and a method's is the method. T. Whitted, "An improved
+//! illumination model for shaded display", CACM 1980.
+
+mod cache;
+mod chain;
+mod frame;
+mod sphere;
+mod surfaces;
+
+pub use cache::Cache;
+pub use chain::{Bounce, Chain};
+pub use surfaces::Hit;
+
+use crate::geometry::Ray;
+use crate::scene::{Moment, ObjectId, Scene};
+use surfaces::Surfaces;
+
+/// How objects with a closed form are intersected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spheres {
+    /// As the meshes the GPU draws.
+    Tessellated,
+    /// By their closed form; their triangle is 0.
+    Analytic,
+}
+
+/// What a truth is traced with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TruthOptions {
+    /// Rays a pixel for the picture, on a regular grid within the pixel; rounded up to a square.
+    /// The record is always that of the pixel's centre.
+    pub spp: u32,
+    /// Longest chain of mirrors; `None` for the scene's own.
+    pub bounces: Option<u32>,
+    pub spheres: Spheres,
+}
+
+impl Default for TruthOptions {
+    fn default() -> Self {
+        TruthOptions { spp: 1, bounces: None, spheres: Spheres::Tessellated }
+    }
+}
+
+/// One moment of a scene, ready to be traced.
+pub struct Tracer<'s> {
+    scene: &'s Scene,
+    moment: Moment,
+    options: TruthOptions,
+    surfaces: Surfaces<'s>,
+    /// Rank of each object among the scene's reflectors, for packed traces; 0 for the others.
+    ranks: Vec<u32>,
+}
+
+impl<'s> Tracer<'s> {
+    /// Build the trees for `moment`, a frame of `scene`.
+    pub fn new(scene: &'s Scene, moment: &Moment, options: TruthOptions) -> Self {
+        let mut ranks = vec![0; scene.objects.len()];
+        for (rank, reflector) in scene.reflectors().into_iter().enumerate() {
+            ranks[reflector as usize] = rank as u32;
+        }
+        let surfaces = Surfaces::new(scene, moment, options.spheres);
+        Tracer { scene, moment: moment.clone(), options, surfaces, ranks }
+    }
+
+    pub fn scene(&self) -> &'s Scene {
+        self.scene
+    }
+
+    pub fn moment(&self) -> &Moment {
+        &self.moment
+    }
+
+    pub fn options(&self) -> TruthOptions {
+        self.options
+    }
+
+    /// Longest chain of mirrors followed.
+    pub fn bounces(&self) -> u32 {
+        self.options.bounces.unwrap_or(self.scene.bounces).max(1)
+    }
+
+    /// The surface seen along a ray of the camera, between its near and far plane.
+    pub fn look(&self, eye_ray: &Ray) -> Option<Hit> {
+        let camera = &self.moment.camera;
+        let [_, _, back] = camera.axes();
+        // The planes are flat, distances along the ray are not.
+        let stretch = -1.0 / eye_ray.direction.dot(back);
+        self.surfaces.nearest(eye_ray, [camera.near * stretch, camera.far * stretch], None)
+    }
+
+    /// The surface met when leaving `from` towards `direction` (unit length), by the rule of
+    /// [`Hit`] for a mirrored ray and its own object.
+    pub fn leave(&self, from: &Hit, direction: glam::Vec3) -> Option<Hit> {
+        let ray = Ray { origin: from.point, direction };
+        self.surfaces.nearest(&ray, [0.0, f32::INFINITY], Some(from))
+    }
+
+    /// What lies at `point` of one triangle of an object, as seen by a ray travelling along
+    /// `incident`: `None` when the scene has no such triangle.
+    pub fn surface_at(
+        &self,
+        object: ObjectId,
+        triangle: u32,
+        point: glam::Vec3,
+        incident: glam::Vec3,
+    ) -> Option<Hit> {
+        self.surfaces.at(object, triangle, point, incident)
+    }
+}

@@ -1,0 +1,168 @@
+//! A benchmark: cases of one scene, timed against each other and compared with the truth.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use serde_json::json;
+
+use super::evidence::{self, Evidence};
+use super::lab::{Lab, TRUTH};
+use super::output::{OutputFolder, write_file};
+use super::results::{COMMIT, Row, SCHEMA_VERSION, SceneCard, case_columns};
+use super::results_file::{self, RESULTS};
+use super::rows;
+use super::timing::{self, Timing, TimingPlan};
+use crate::error::Result;
+use crate::methods::Case;
+use crate::scene::{Moment, Scene};
+
+/// What is measured on every scene and case.
+#[derive(Clone, Debug)]
+pub struct BenchPlan {
+    /// The scene's frames, in order.
+    pub frames: Vec<u32>,
+    /// How many of them, evenly spaced, are compared with the truth.
+    pub truth_frames: usize,
+    /// Whether frames are timed at all.
+    pub timed: bool,
+    /// Play the frames so often, instead of until the interval is narrow.
+    pub repeat: Option<u32>,
+}
+
+/// One row and the arrays behind it.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    pub row: Row,
+    pub timing: Option<Timing>,
+    pub evidence: Evidence,
+}
+
+/// Measures cases of one scene. The cases are timed in turns within each other.
+///
+/// # Errors
+/// Those of the engine and of the truth.
+pub fn bench(lab: &Lab, scene: &Scene, cases: &[Case], plan: &BenchPlan) -> Result<Vec<Outcome>> {
+    let truth_frames = evidence::evenly_spaced(&plan.frames, plan.truth_frames);
+    let mut timings = if plan.timed { time(lab, scene, cases, plan)? } else { BTreeMap::new() };
+    let gathered = evidence::gather(lab, scene, cases, &truth_frames)?;
+    let outcomes = cases.iter().zip(gathered).enumerate().map(|(i, (case, evidence))| {
+        let timed = timings.remove(&i);
+        let mut row = row(lab, scene, case, plan, &truth_frames)?;
+        if let Some((timing, pixels)) = &timed {
+            row.prepare = Some(rows::prepare(timing));
+            row.frame_gpu_ms = rows::frame_time(timing, lab.settings.seed);
+            row.passes = rows::passes(timing);
+            row.counters = rows::counters(timing);
+            row.clock = Some(timing.clock);
+            row.software_timing = row.device.is_software;
+            row.reflector_pixels = *pixels as f64;
+        }
+        if !evidence.frames.is_empty() {
+            row.reflector_pixels = evidence.reflector_pixels;
+            row.accuracy = evidence.accuracy();
+        }
+        if !evidence.counters.is_empty() {
+            row.counters.clone_from(&evidence.counters);
+        }
+        Ok(Outcome { row, timing: timed.map(|(timing, _)| timing), evidence })
+    });
+    outcomes.collect()
+}
+
+/// Times every case but the truth, by its place in the list, with the reflector pixels it covered.
+fn time(
+    lab: &Lab,
+    scene: &Scene,
+    cases: &[Case],
+    plan: &BenchPlan,
+) -> Result<BTreeMap<usize, (Timing, u64)>> {
+    let places: Vec<usize> = (0..cases.len()).filter(|&i| !cases[i].uses(TRUTH)).collect();
+    if places.is_empty() {
+        return Ok(BTreeMap::new());
+    }
+    let settings = &lab.settings;
+    let engines =
+        places.iter().map(|&i| lab.engine(scene, &cases[i], settings.size, settings.record));
+    let mut engines = engines.collect::<Result<Vec<_>>>()?;
+    let moments: Vec<Moment> = plan.frames.iter().map(|frame| scene.at(*frame)).collect();
+    let timing_plan = TimingPlan {
+        repeat: plan.repeat,
+        seed: settings.seed,
+        clock: lab.clock_source()?,
+        cap: TimingPlan::CAP,
+    };
+    lab.progress.set_message(format!("{}: timing {} cases", scene.name, places.len()));
+    let begun = lab.progress.position();
+    let timings = timing::measure(&mut engines, &moments, &timing_plan, &mut |share| {
+        lab.progress.set_position(begun + (share * cases.len() as f64) as u64);
+    })?;
+    lab.progress.set_position(begun);
+    let pixels = engines.iter().map(|engine| engine.pixels());
+    Ok(places.into_iter().zip(timings.into_iter().zip(pixels)).collect())
+}
+
+/// A row without measurements.
+pub fn row(
+    lab: &Lab,
+    scene: &Scene,
+    case: &Case,
+    plan: &BenchPlan,
+    truth_frames: &[u32],
+) -> Result<Row> {
+    let settings = &lab.settings;
+    let (method, variant, params) = case_columns(case, lab.methods);
+    let mut row = Row {
+        schema_version: SCHEMA_VERSION,
+        run: String::new(),
+        commit: COMMIT.into(),
+        scene: SceneCard::of(scene),
+        case: case.text.clone(),
+        method,
+        variant,
+        params,
+        fallback: settings.fallback.name().into(),
+        record: settings.record.name().into(),
+        size: settings.size,
+        frames: plan.frames.clone(),
+        truth_frames: truth_frames.to_vec(),
+        device: lab.device_card(case)?,
+        software_timing: false,
+        reflector_pixels: 0.0,
+        prepare: None,
+        frame_gpu_ms: None,
+        passes: Vec::new(),
+        counters: BTreeMap::new(),
+        accuracy: None,
+        stability: None,
+        clock: None,
+    };
+    // Everything known before measuring is an input.
+    let inputs = json!([row, settings.seed, plan.timed, plan.repeat]);
+    row.run = blake3::hash(inputs.to_string().as_bytes()).to_hex()[..16].to_owned();
+    Ok(row)
+}
+
+impl Outcome {
+    /// Appends the row to the folder's results and puts the per-frame arrays beside them, as
+    /// `RUN.frames.json`. Returns that file.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Output`].
+    pub fn save(&self, folder: &OutputFolder) -> Result<PathBuf> {
+        let timed = self.timing.iter().flat_map(|timing| &timing.frames).map(|(frame, times)| {
+            let prepare: f64 = times.prepare.iter().map(|pass| pass.gpu_ms).sum();
+            json!({"frame": frame, "gpu_ms": times.frame_gpu_ms, "prepare_gpu_ms": prepare})
+        });
+        let compared = self.evidence.frames.iter();
+        let compared =
+            compared.map(|(frame, accuracy)| json!({"frame": frame, "accuracy": accuracy}));
+        let arrays = json!({
+            "run": self.row.run, "scene": self.row.scene.name, "case": self.row.case,
+            "timed": timed.collect::<Vec<_>>(), "compared": compared.collect::<Vec<_>>(),
+        });
+        let path = folder.file(&format!("{}.frames.json", self.row.run));
+        write_file(&path, |file| Ok(serde_json::to_writer(file, &arrays)?))?;
+        results_file::append(&folder.file(RESULTS), &self.row)?;
+        Ok(path)
+    }
+}

@@ -1,0 +1,222 @@
+//! One pixel's answer against the truth's.
+
+use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
+use rayon::prelude::*;
+
+use super::accuracy::Class;
+use super::displacement::{Query, Queue};
+use super::field::{Field, Target, key};
+use crate::scene::{FrameRecord, Ids, Status, shading};
+use crate::truth::{Chain, Tracer};
+
+/// Relative difference of distances over which a depth is wrong.
+const DEPTH_TOLERANCE: f32 = 0.05;
+
+/// What became of one compared pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Judged {
+    pub missing: bool,
+    pub spurious: bool,
+    pub wrong_object: bool,
+    pub wrong_depth: bool,
+    pub unreachable: bool,
+    /// Where the answer is of the truth's kind and belongs somewhere.
+    pub displacement_px: Option<f32>,
+    /// Meaningful with a displacement.
+    pub angle_deg: f32,
+    /// The pixel's colour with the truth's S and with the answer's, both shaded by the truth.
+    pub shaded: [Vec3; 2],
+}
+
+impl Judged {
+    /// Two equal answers.
+    const EQUAL: Judged = Judged {
+        missing: false,
+        spurious: false,
+        wrong_object: false,
+        wrong_depth: false,
+        unreachable: false,
+        displacement_px: Some(0.0),
+        angle_deg: 0.0,
+        shaded: [Vec3::ZERO; 2],
+    };
+
+    pub fn class(&self) -> Class {
+        let faults = [
+            (self.missing, Class::Missing),
+            (self.spurious, Class::Spurious),
+            (self.wrong_object, Class::WrongObject),
+            (self.wrong_depth, Class::WrongDepth),
+            (self.unreachable, Class::Unreachable),
+        ];
+        faults.into_iter().find(|(fault, _)| *fault).map_or(Class::Placed, |(_, class)| class)
+    }
+}
+
+/// The part of a record that is compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Answer {
+    status: Status,
+    ids: Ids,
+    point: Vec4,
+}
+
+impl Answer {
+    fn of(frame: &FrameRecord, pixel: usize) -> Self {
+        let (ids, point) = (frame.record.ids[pixel], frame.record.point[pixel]);
+        // A point that is not a number is no answer.
+        let status = if point.is_finite() { ids.status() } else { Status::Missing };
+        Answer { status, ids, point }
+    }
+
+    /// Whether both show the same spot of the same surface, whoever found it.
+    fn equals(&self, other: &Answer) -> bool {
+        let spot = |answer: &Answer| (answer.status, answer.ids.object, answer.ids.triangle);
+        spot(self) == spot(other) && self.point == other.point
+    }
+}
+
+/// Judge every compared pixel, in that order.
+pub(super) fn judge_all(
+    truth: &FrameRecord,
+    tested: &FrameRecord,
+    tracer: &Tracer,
+    compared: &[usize],
+) -> Vec<Judged> {
+    let answers = |pixel: usize| [Answer::of(truth, pixel), Answer::of(tested, pixel)];
+    let differs = |&pixel: &usize| {
+        let [expected, answer] = answers(pixel);
+        !expected.equals(&answer)
+    };
+    if !compared.iter().any(differs) {
+        return vec![Judged::EQUAL; compared.len()];
+    }
+    let court = Court::new(truth, tracer);
+    compared
+        .par_iter()
+        .map_init(Queue::new, |queue, &pixel| court.judge(pixel, answers(pixel), queue))
+        .collect()
+}
+
+/// What judging any pixel needs.
+struct Court<'a> {
+    tracer: &'a Tracer<'a>,
+    truth: &'a FrameRecord,
+    /// Every reflector pixel's chain.
+    chains: Vec<Option<Chain>>,
+    /// By order, from 1.
+    fields: Vec<Field>,
+}
+
+impl<'a> Court<'a> {
+    fn new(truth: &'a FrameRecord, tracer: &'a Tracer) -> Self {
+        let size = truth.size;
+        let chains: Vec<Option<Chain>> = (0..truth.reflector.len())
+            .into_par_iter()
+            .map(|pixel| {
+                let centre = at(size, pixel).as_vec2() + 0.5;
+                let ray = tracer.moment().camera.ray(size, centre);
+                let hit = tracer.look(&ray).filter(|hit| tracer.mirror(hit).is_some())?;
+                Some(tracer.chain(hit, ray.direction))
+            })
+            .collect();
+        let longest = chains.iter().flatten().map(Chain::order).max().unwrap_or(0);
+        let fields = (1..=longest).map(|order| Field::new(size, &chains, order)).collect();
+        Court { tracer, truth, chains, fields }
+    }
+
+    fn judge(&self, pixel: usize, [expected, answer]: [Answer; 2], queue: &mut Queue) -> Judged {
+        let Some(chain) = &self.chains[pixel] else {
+            // The truth is not of this tracer; only equality can be told.
+            return if expected.equals(&answer) {
+                Judged::EQUAL
+            } else {
+                Judged { missing: true, ..Judged::default() }
+            };
+        };
+        let shaded = self.shaded(pixel, chain, &expected, &answer);
+        if expected.equals(&answer) {
+            return Judged { shaded, ..Judged::EQUAL };
+        }
+        let found = |answer: &Answer| answer.status == Status::Found;
+        let both_found = found(&expected) && found(&answer);
+        let missing = answer.status == Status::Missing || found(&expected) && !found(&answer);
+        let spurious = !found(&expected) && found(&answer);
+        let displacement_px = (!missing && !spurious)
+            .then(|| self.displacement(pixel, chain, Target::new(answer.point), queue))
+            .flatten();
+        Judged {
+            missing,
+            spurious,
+            wrong_object: both_found && expected.ids.object != answer.ids.object,
+            wrong_depth: both_found && wrong_depth(chain, expected.point.xyz(), answer.point.xyz()),
+            unreachable: !missing && !spurious && displacement_px.is_none(),
+            displacement_px,
+            angle_deg: angle_deg(chain, Target::new(answer.point)),
+            shaded,
+        }
+    }
+
+    fn displacement(
+        &self,
+        pixel: usize,
+        chain: &Chain,
+        target: Target,
+        queue: &mut Queue,
+    ) -> Option<f32> {
+        let query = Query {
+            tracer: self.tracer,
+            size: self.truth.size,
+            field: &self.fields[chain.order() as usize - 1],
+            pixel: at(self.truth.size, pixel),
+            chain,
+            key: key(chain.trace, chain.order()),
+            target,
+        };
+        query.displacement(queue)
+    }
+
+    /// The colour at the pixel's centre as traced, and as it were with the answer at the chain's
+    /// end. No answer is black.
+    fn shaded(&self, pixel: usize, chain: &Chain, expected: &Answer, answer: &Answer) -> [Vec3; 2] {
+        let traced = self.truth.record.radiance[pixel];
+        let arriving = if expected.equals(answer) { traced } else { self.relit(chain, answer) };
+        let reflector = &chain.bounces[0].hit;
+        [traced, arriving].map(|radiance| self.tracer.composite(reflector, radiance))
+    }
+
+    fn relit(&self, chain: &Chain, answer: &Answer) -> Vec3 {
+        let tracer = self.tracer;
+        let end = match answer.status {
+            Status::Missing => return Vec3::ZERO,
+            Status::Environment => shading::environment(tracer.scene(), answer.point.xyz()),
+            Status::Found => {
+                let point = answer.point.xyz();
+                let incident = (point - chain.last().hit.point).normalize_or_zero();
+                let Ids { object, triangle, .. } = answer.ids;
+                let hit = tracer.surface_at(object, triangle, point, incident);
+                let left = tracer.bounces().saturating_sub(chain.order());
+                hit.map_or(Vec3::ZERO, |hit| tracer.leaving(&hit, incident, left))
+            }
+        };
+        tracer.through(&chain.bounces, end)
+    }
+}
+
+fn at(size: [u32; 2], pixel: usize) -> UVec2 {
+    let pixel = pixel as u32;
+    UVec2::new(pixel % size[0], pixel / size[0])
+}
+
+fn wrong_depth(chain: &Chain, expected: Vec3, answer: Vec3) -> bool {
+    let last = chain.last().hit.point;
+    let (right, given) = (last.distance(expected), last.distance(answer));
+    (given - right).abs() > DEPTH_TOLERANCE * right
+}
+
+/// Angle at the last mirror; by the chord, which keeps small angles.
+fn angle_deg(chain: &Chain, target: Target) -> f32 {
+    let towards = target.seen_from(chain.last().hit.point);
+    let chord = towards.distance(chain.last().mirrored);
+    2.0 * (0.5 * chord).min(1.0).asin().to_degrees()
+}

@@ -1,0 +1,316 @@
+//! From the parsed file to the checked scene.
+
+use std::collections::{BTreeMap, HashMap};
+
+use glam::{Affine3A, EulerRot, Quat, Vec2, Vec3};
+use toml::Spanned;
+
+use super::camera;
+use super::format::{
+    EnvironmentFile, KeyFile, LightingFile, MaterialFile, ObjectFile, SceneFile, Span,
+};
+use super::image::decode;
+use super::parts::{PartMaterial, parts};
+use super::source::Source;
+use super::values::{Triple, colour, triple};
+use crate::error::Result;
+use crate::scene::{
+    Environment, Image, Lighting, Material, Mirror, Motion, Object, Pattern, Scene, Surface,
+};
+
+/// Everything gathered so far.
+pub struct Builder {
+    source: Source,
+    rate_hz: f32,
+    images: Vec<Image>,
+    materials: Vec<Material>,
+    meshes: Vec<crate::geometry::Mesh>,
+    objects: Vec<Object>,
+    /// Shapes already made, by their text and scale: what two objects share is stored once.
+    made: HashMap<String, Vec<MadePart>>,
+}
+
+/// A part whose mesh is in place.
+#[derive(Clone)]
+struct MadePart {
+    name: Option<String>,
+    mesh: usize,
+    surface: Option<Surface>,
+    material: PartMaterial,
+}
+
+/// Checks `file` and reads its assets.
+pub fn build(name: String, source: Source, file: SceneFile) -> Result<Scene> {
+    let mut builder = Builder {
+        source,
+        rate_hz: file.rate_hz.0,
+        images: Vec::new(),
+        materials: Vec::new(),
+        meshes: Vec::new(),
+        objects: Vec::new(),
+        made: HashMap::new(),
+    };
+    let lighting = match file.lighting {
+        Some(lighting) => builder.lighting(&lighting)?,
+        None => Lighting { ambient: Vec3::ONE, towards_sun: Vec3::Y, sun: Vec3::ZERO },
+    };
+    let environment = builder.environment(file.environment.get_ref())?;
+    for (name, material) in &file.materials {
+        let material = builder.material(name, material)?;
+        builder.materials.push(material);
+    }
+    let camera = camera::path(&builder.source, &file.camera, file.rate_hz.0)?;
+    for object in &file.objects {
+        builder.object(object.get_ref(), &file.materials)?;
+    }
+    Ok(Scene {
+        name,
+        about: file.about,
+        hash: builder.source.hash(),
+        frames: file.frames.0,
+        rate_hz: file.rate_hz.0,
+        camera,
+        objects: builder.objects,
+        meshes: builder.meshes,
+        materials: builder.materials,
+        images: builder.images,
+        environment,
+        lighting,
+        bounces: file.bounces.0,
+    })
+}
+
+impl Builder {
+    fn lighting(&self, file: &Spanned<LightingFile>) -> Result<Lighting> {
+        let lighting = file.get_ref();
+        let towards_sun = triple(lighting.towards_sun).try_normalize();
+        let Some(towards_sun) = towards_sun else {
+            let message = "towards_sun has no direction; valid: a vector that is not zero";
+            return Err(self.source.error(&file.span(), message));
+        };
+        Ok(Lighting { ambient: colour(lighting.ambient), towards_sun, sun: colour(lighting.sun) })
+    }
+
+    fn environment(&mut self, file: &EnvironmentFile) -> Result<Environment> {
+        Ok(match file {
+            EnvironmentFile::Colour(one) => Environment::Colour(colour(*one)),
+            EnvironmentFile::Gradient(file) => Environment::Gradient {
+                zenith: colour(file.zenith),
+                horizon: colour(file.horizon),
+                nadir: colour(file.nadir),
+            },
+            EnvironmentFile::LatLong(file) => {
+                Environment::LatLong { image: self.image(&file.file, file.cap.0)? }
+            }
+        })
+    }
+
+    /// Reads an image and gives its index.
+    fn image(&mut self, file: &Spanned<String>, cap: f32) -> Result<usize> {
+        let asset = self.source.asset(file.get_ref(), &file.span())?;
+        self.images.push(decode(&asset, cap)?);
+        Ok(self.images.len() - 1)
+    }
+
+    fn material(&mut self, name: &str, file: &Spanned<MaterialFile>) -> Result<Material> {
+        let (span, file) = (file.span(), file.get_ref());
+        let mirror = file
+            .mirror
+            .as_ref()
+            .map(|mirror| Mirror { reflectance: mirror.reflectance.0, tint: colour(mirror.tint) });
+        let mut patterns = Vec::new();
+        if let Some(one) = file.colour {
+            patterns.push(Pattern::Colour(colour(one)));
+        }
+        if let Some(checker) = &file.checker {
+            let size = Vec2::from(checker.size.map(|s| s.0));
+            patterns.push(Pattern::Checker {
+                even: colour(checker.even),
+                odd: colour(checker.odd),
+                size,
+            });
+        }
+        if let Some(grid) = &file.grid {
+            patterns.push(Pattern::Grid {
+                ground: colour(grid.ground),
+                lines: colour(grid.lines),
+                size: Vec2::from(grid.size.map(|s| s.0)),
+                line: grid.line.0,
+            });
+        }
+        if let Some(image) = &file.image {
+            let size = Vec2::from(image.size.map(|s| s.0));
+            patterns.push(Pattern::Image {
+                image: self.image(&image.file, f32::from(half::f16::MAX))?,
+                size,
+            });
+        }
+        let pattern = match (patterns.pop(), mirror) {
+            (Some(pattern), _) if patterns.is_empty() => pattern,
+            (None, Some(_)) => Pattern::Colour(Vec3::ZERO),
+            _ => {
+                let message = format!(
+                    "material `{name}` needs one look; valid: one of colour, checker, grid, image, or mirror alone"
+                );
+                return Err(self.source.error(&span, message));
+            }
+        };
+        Ok(Material { name: name.to_owned(), pattern, mirror })
+    }
+
+    fn object(
+        &mut self,
+        file: &ObjectFile,
+        defined: &BTreeMap<String, Spanned<MaterialFile>>,
+    ) -> Result<()> {
+        let group = self.object_name(&file.name)?;
+        let motion = self.motion(file)?;
+        for part in self.make(file)? {
+            let name = match &part.name {
+                Some(part) => format!("{group}.{}", part.replace(|c| !is_name_character(c), "-")),
+                None => group.clone(),
+            };
+            let material = self.part_material(file, part.material, defined)?;
+            self.objects.push(Object {
+                name,
+                group: group.clone(),
+                mesh: part.mesh,
+                material,
+                surface: part.surface,
+                motion: motion.clone(),
+            });
+        }
+        Ok(())
+    }
+
+    /// Checks that a name is new and may stand in the pattern of a case.
+    fn object_name(&self, name: &Spanned<String>) -> Result<String> {
+        let text = name.get_ref();
+        let fail = |message: String| Err(self.source.error(&name.span(), message));
+        if text.is_empty() || !text.chars().all(is_name_character) {
+            return fail(format!("object name `{text}`; valid: letters, digits, `-`, `_` and `.`"));
+        }
+        if self.objects.iter().any(|object| object.group == *text || object.name == *text) {
+            return fail(format!("a second object `{text}`; valid: a name of its own for each"));
+        }
+        Ok(text.clone())
+    }
+
+    /// The meshes of an object, from the store where an equal shape was made before.
+    fn make(&mut self, file: &ObjectFile) -> Result<Vec<MadePart>> {
+        let scale = file.scale.map_or(1.0, |s| s.0);
+        let shape = file.shape.get_ref();
+        let key = format!("{scale} {shape:?}");
+        if let Some(made) = self.made.get(&key) {
+            return Ok(made.clone());
+        }
+        let mut made = Vec::new();
+        for part in parts(&mut self.source, shape, &file.shape.span())? {
+            self.meshes.push(part.mesh.scaled(scale));
+            let surface = part
+                .surface
+                .map(|Surface::Sphere { radius }| Surface::Sphere { radius: scale * radius });
+            let mesh = self.meshes.len() - 1;
+            made.push(MadePart { name: part.name, mesh, surface, material: part.material });
+        }
+        self.made.insert(key, made.clone());
+        Ok(made)
+    }
+
+    /// The index of a part's material; colours of mesh files become materials when first met.
+    fn part_material(
+        &mut self,
+        file: &ObjectFile,
+        material: PartMaterial,
+        defined: &BTreeMap<String, Spanned<MaterialFile>>,
+    ) -> Result<usize> {
+        let (name, span) = match (material, &file.material) {
+            (_, Some(own)) => (own.get_ref().clone(), own.span()),
+            (PartMaterial::Named(name, span), None) => (name, span),
+            (PartMaterial::Objects, None) => {
+                let message = "missing key `material`; valid: a name under [materials]";
+                return Err(self.source.error(&file.name.span(), message));
+            }
+            (PartMaterial::Diffuse { name, colour }, None) => {
+                return Ok(self.diffuse_material(name, colour));
+            }
+        };
+        match self.materials.iter().position(|m| m.name == name) {
+            Some(index) if defined.contains_key(&name) => Ok(index),
+            _ => {
+                let valid: Vec<&str> = defined.keys().map(String::as_str).collect();
+                let message = format!("unknown material `{name}`; valid: {}", valid.join(", "));
+                Err(self.source.error(&span, message))
+            }
+        }
+    }
+
+    fn diffuse_material(&mut self, name: String, colour: Vec3) -> usize {
+        match self.materials.iter().position(|m| m.name == name) {
+            Some(index) => index,
+            None => {
+                let pattern = Pattern::Colour(colour);
+                self.materials.push(Material { name, pattern, mirror: None });
+                self.materials.len() - 1
+            }
+        }
+    }
+
+    fn motion(&self, file: &ObjectFile) -> Result<Motion> {
+        let still = pose(file.position, file.rotation_deg);
+        match (&file.keys, &file.orbit) {
+            (None, None) => Ok(Motion::Still(still)),
+            (None, Some(orbit)) => Ok(Motion::Orbit {
+                pose: still,
+                centre: triple(orbit.centre),
+                period: orbit.period_s.0 * self.rate_hz,
+            }),
+            (Some(keys), None) if file.position.is_none() && file.rotation_deg.is_none() => {
+                let keyed = |key: &KeyFile| {
+                    (key.time_s.0 * self.rate_hz, pose(Some(key.position), key.rotation_deg))
+                };
+                let span = file.name.span();
+                Ok(Motion::Keys(rising(&self.source, &span, keys, |key| key.time_s.0, keyed)?))
+            }
+            (Some(_), _) => {
+                let message =
+                    "two kinds of motion; valid: keys alone, or position, rotation_deg and orbit";
+                Err(self.source.error(&file.name.span(), message))
+            }
+        }
+    }
+}
+
+/// Converts key frames after checking that there are some and that their times rise; `span` is what
+/// they belong to.
+pub fn rising<K, T>(
+    source: &Source,
+    span: &Span,
+    keys: &[Spanned<K>],
+    time: impl Fn(&K) -> f32,
+    convert: impl Fn(&K) -> T,
+) -> Result<Vec<T>> {
+    if keys.is_empty() {
+        return Err(source.error(span, "keys is empty; valid: one key or more"));
+    }
+    for pair in keys.windows(2) {
+        let (before, after) = (time(pair[0].get_ref()), time(pair[1].get_ref()));
+        if after <= before {
+            let message =
+                format!("time_s = {after} is out of range; valid: above {before}, the key before");
+            return Err(source.error(&pair[1].span(), message));
+        }
+    }
+    Ok(keys.iter().map(|key| convert(key.get_ref())).collect())
+}
+
+fn is_name_character(c: char) -> bool {
+    c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.')
+}
+
+/// World from object space: turned about z, then x, then y, then moved.
+fn pose(position: Option<Triple>, rotation_deg: Option<Triple>) -> Affine3A {
+    let [x, y, z] = rotation_deg.map_or([0.0; 3], |r| r.map(|angle| angle.0.to_radians()));
+    let rotation = Quat::from_euler(EulerRot::YXZ, y, x, z);
+    Affine3A::from_rotation_translation(rotation, position.map_or(Vec3::ZERO, triple))
+}

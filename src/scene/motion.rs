@@ -1,0 +1,141 @@
+//! A scene at one moment: the camera and every object's pose.
+
+use glam::{Affine3A, Quat, Vec3};
+
+use super::{CameraPath, Moment, Motion, ObjectId, Scene};
+use crate::geometry::Camera;
+
+impl Scene {
+    /// The scene at a frame. Orbits go on beyond the last frame, key frames hold.
+    pub fn at(&self, frame: u32) -> Moment {
+        let time = frame as f32;
+        Moment {
+            frame,
+            camera: self.camera.at(time),
+            poses: self.objects.iter().map(|object| object.motion.at(time)).collect(),
+        }
+    }
+
+    /// The box around all objects at a moment: smallest and largest world coordinates. A scene
+    /// without objects has the origin.
+    pub fn bounds(&self, moment: &Moment) -> (Vec3, Vec3) {
+        let boxes =
+            (0..self.objects.len() as ObjectId).map(|object| self.object_bounds(moment, object));
+        boxes.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).unwrap_or((Vec3::ZERO, Vec3::ZERO))
+    }
+
+    /// The world box of one object at a moment.
+    pub fn object_bounds(&self, moment: &Moment, object: ObjectId) -> (Vec3, Vec3) {
+        let pose = moment.poses[object as usize];
+        let world = self.mesh_of(object).positions.iter().map(|&p| pose.transform_point3(p));
+        let empty = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        world.fold(empty, |(low, high), p| (low.min(p), high.max(p)))
+    }
+}
+
+impl Motion {
+    /// World from object space at `frame`.
+    pub fn at(&self, frame: f32) -> Affine3A {
+        match self {
+            Motion::Still(pose) => *pose,
+            Motion::Keys(keys) => between(keys, frame, blend_poses),
+            Motion::Orbit { pose, centre, period } => {
+                let turn = Affine3A::from_rotation_y(turned(frame, *period));
+                let to_centre = Affine3A::from_translation(*centre);
+                to_centre * turn * to_centre.inverse() * *pose
+            }
+        }
+    }
+}
+
+impl CameraPath {
+    /// The camera at `frame`.
+    pub fn at(&self, frame: f32) -> Camera {
+        match self {
+            CameraPath::Keys(keys) => between(keys, frame, blend_cameras),
+            CameraPath::Orbit { camera, start, period, sweep } => {
+                let turn = turned(frame, *period);
+                let angle = start + sweep.map_or(turn, |sweep| sweep * turn.sin());
+                let arm = Quat::from_rotation_y(angle) * (camera.eye - camera.target);
+                Camera { eye: camera.target + arm, ..*camera }
+            }
+        }
+    }
+}
+
+/// Radians after `frame` of `period` frames a turn.
+fn turned(frame: f32, period: f32) -> f32 {
+    std::f32::consts::TAU * (frame / period).fract()
+}
+
+/// The value at `frame` between the keys around it; the first or last key outside. Not empty.
+fn between<T: Copy>(keys: &[(f32, T)], frame: f32, blend: fn(T, T, f32) -> T) -> T {
+    let after = keys.partition_point(|(time, _)| *time <= frame);
+    match (after.checked_sub(1).map(|before| keys[before]), keys.get(after)) {
+        (Some((start, a)), Some(&(end, b))) => blend(a, b, (frame - start) / (end - start)),
+        (Some((_, a)), None) => a,
+        (None, _) => keys[0].1,
+    }
+}
+
+fn blend_poses(a: Affine3A, b: Affine3A, t: f32) -> Affine3A {
+    let (_, rotation_a, from) = a.to_scale_rotation_translation();
+    let (_, rotation_b, to) = b.to_scale_rotation_translation();
+    Affine3A::from_rotation_translation(rotation_a.slerp(rotation_b, t), from.lerp(to, t))
+}
+
+fn blend_cameras(a: Camera, b: Camera, t: f32) -> Camera {
+    Camera { eye: a.eye.lerp(b.eye, t), target: a.target.lerp(b.target, t), ..a }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Projection;
+
+    fn camera(eye: Vec3) -> Camera {
+        let projection = Projection::Perspective { fov_y: 1.0 };
+        Camera { eye, target: Vec3::Y, up: Vec3::Y, projection, near: 0.1, far: 10.0 }
+    }
+
+    #[test]
+    fn keys_are_blended_between_and_held_outside() {
+        let pose = |x: f32, turn: f32| {
+            Affine3A::from_rotation_translation(Quat::from_rotation_y(turn), Vec3::X * x)
+        };
+        let motion = Motion::Keys(vec![(10.0, pose(0.0, 0.0)), (20.0, pose(2.0, 1.0))]);
+        for (frame, expected) in [
+            (0.0, pose(0.0, 0.0)),
+            (15.0, pose(1.0, 0.5)),
+            (20.0, pose(2.0, 1.0)),
+            (99.0, pose(2.0, 1.0)),
+        ] {
+            assert!(motion.at(frame).abs_diff_eq(expected, 1e-5), "at frame {frame}");
+        }
+    }
+
+    #[test]
+    fn an_orbit_turns_counter_clockwise_seen_from_above() {
+        let pose = Affine3A::from_translation(Vec3::new(2.0, 1.0, 0.0));
+        let motion = Motion::Orbit { pose, centre: Vec3::X, period: 8.0 };
+        let at = |frame| Vec3::from(motion.at(frame).translation);
+        assert!(at(0.0).abs_diff_eq(Vec3::new(2.0, 1.0, 0.0), 1e-6));
+        assert!(at(2.0).abs_diff_eq(Vec3::new(1.0, 1.0, -1.0), 1e-6));
+        assert!(at(8.0).abs_diff_eq(at(0.0), 1e-6));
+    }
+
+    #[test]
+    fn a_camera_circles_or_swings() {
+        let camera = camera(Vec3::new(0.0, 2.0, 4.0));
+        let circle = CameraPath::Orbit { camera, start: 0.0, period: 4.0, sweep: None };
+        assert!(circle.at(1.0).eye.abs_diff_eq(Vec3::new(4.0, 2.0, 0.0), 1e-5));
+        assert_eq!(circle.at(0.0), camera);
+
+        let sweep = Some(0.5);
+        let swing = CameraPath::Orbit { camera, start: 0.1, period: 4.0, sweep };
+        for (frame, angle) in [(0.0, 0.1f32), (1.0, 0.6), (2.0, 0.1), (3.0, -0.4)] {
+            let expected = Vec3::new(4.0 * angle.sin(), 2.0, 4.0 * angle.cos());
+            assert!(swing.at(frame).eye.abs_diff_eq(expected, 1e-5), "at frame {frame}");
+        }
+    }
+}

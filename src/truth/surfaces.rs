@@ -1,0 +1,161 @@
+//! The scene's surfaces at one moment, in world space, and where rays meet them.
+
+use glam::{Affine3A, Vec2, Vec3};
+
+use super::Spheres;
+use super::sphere::Sphere;
+use crate::geometry::Ray;
+use crate::geometry::bvh::Bvh;
+use crate::geometry::optics::face_forward;
+use crate::scene::{Moment, ObjectId, Scene, Surface};
+
+/// A point of a surface, met by a ray.
+///
+/// A mirrored ray that starts here never meets the triangle it starts on, and meets its own object
+/// only by faces it can come to from outside: having left a front side it ignores back faces of the
+/// object, having left a back side front faces. So a grazing ray, which an interpolated normal may
+/// send slightly below the triangles, does not get caught in a closed mirror, and a concave mirror
+/// still sees itself. For convex closed mirrors the rule is exact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    pub object: ObjectId,
+    /// Triangle of the object's mesh; 0 on a closed form.
+    pub triangle: u32,
+    pub point: Vec3,
+    /// Unit shading normal, on the side the ray came from.
+    pub normal: Vec3,
+    pub uv: Vec2,
+    /// Whether the ray met the side the triangle's corners run counter-clockwise on.
+    pub front: bool,
+    /// Metres from the ray's origin.
+    pub distance: f32,
+}
+
+/// A closed form standing for an object's mesh.
+struct Shape {
+    object: ObjectId,
+    sphere: Sphere,
+}
+
+pub(super) struct Surfaces<'s> {
+    scene: &'s Scene,
+    poses: Vec<Affine3A>,
+    bvh: Bvh,
+    /// Object and triangle of each triangle in the tree.
+    owners: Vec<(ObjectId, u32)>,
+    shapes: Vec<Shape>,
+}
+
+impl<'s> Surfaces<'s> {
+    pub fn new(scene: &'s Scene, moment: &Moment, spheres: Spheres) -> Self {
+        let mut triangles = Vec::new();
+        let mut owners = Vec::new();
+        let mut shapes = Vec::new();
+        for (id, object) in scene.objects.iter().enumerate() {
+            let (id, pose) = (id as ObjectId, moment.poses[id]);
+            if let (Some(Surface::Sphere { radius }), Spheres::Analytic) = (object.surface, spheres)
+            {
+                shapes.push(Shape { object: id, sphere: Sphere { pose, radius } });
+                continue;
+            }
+            let mesh = scene.mesh_of(id);
+            for (index, corners) in mesh.triangles.iter().enumerate() {
+                let place = |corner: u32| pose.transform_point3(mesh.positions[corner as usize]);
+                triangles.push(corners.map(place));
+                owners.push((id, index as u32));
+            }
+        }
+        let poses = moment.poses.clone();
+        Surfaces { scene, poses, bvh: Bvh::new(&triangles), owners, shapes }
+    }
+
+    /// The nearest surface along `ray` within `range` metres; `from` is the point a mirrored ray
+    /// starts at.
+    pub fn nearest(&self, ray: &Ray, range: [f32; 2], from: Option<&Hit>) -> Option<Hit> {
+        let accept = |index: u32, front: bool| {
+            let (object, triangle) = self.owners[index as usize];
+            from.is_none_or(|from| {
+                object != from.object || (triangle != from.triangle && front == from.front)
+            })
+        };
+        let mut found = self.bvh.nearest(ray, range, accept).map(|hit| {
+            let (object, triangle) = self.owners[hit.triangle as usize];
+            let surface = self.interpolate(object, triangle, hit.barycentrics);
+            self.met(surface, ray, hit.front)
+        });
+        for shape in &self.shapes {
+            let end = found.map_or(range[1], |hit| hit.distance);
+            let own = from.filter(|from| from.object == shape.object);
+            if let Some((point, front)) = shape.sphere.nearest(ray, [range[0], end], own) {
+                found = Some(self.met(shape.at(point), ray, front));
+            }
+        }
+        found
+    }
+
+    /// See [`super::Tracer::surface_at`].
+    pub fn at(&self, object: ObjectId, triangle: u32, point: Vec3, incident: Vec3) -> Option<Hit> {
+        let ray = Ray { origin: point, direction: incident };
+        if let Some(shape) = self.shapes.iter().find(|shape| shape.object == object) {
+            let outward = shape.sphere.normal(point);
+            return Some(self.met(shape.at(point), &ray, outward.dot(incident) < 0.0));
+        }
+        self.scene.objects.get(object as usize)?;
+        let mesh = self.scene.mesh_of(object);
+        let corners = mesh.triangles.get(triangle as usize)?;
+        let local = self.poses[object as usize].inverse().transform_point3(point);
+        let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize]);
+        let (ab, ac, ap) = (b - a, c - a, local - a);
+        let normal = ab.cross(ac);
+        let area = normal.length_squared();
+        // The point may lie beside the triangle; what is meant is its nearest point.
+        let v = (ap.cross(ac).dot(normal) / area).clamp(0.0, 1.0);
+        let w = (ab.cross(ap).dot(normal) / area).clamp(0.0, 1.0 - v);
+        let facing = self.poses[object as usize].transform_vector3(normal);
+        let surface = self.interpolate(object, triangle, Vec2::new(v, w));
+        Some(self.met(surface, &ray, facing.dot(incident) < 0.0))
+    }
+
+    /// A point of a triangle from the weights of its second and third corner, as the rasteriser
+    /// interpolates it.
+    fn interpolate(&self, object: ObjectId, triangle: u32, barycentrics: Vec2) -> SurfacePoint {
+        let mesh = self.scene.mesh_of(object);
+        let pose = &self.poses[object as usize];
+        let [a, b, c] = mesh.triangles[triangle as usize].map(|corner| corner as usize);
+        let Vec2 { x: v, y: w } = barycentrics;
+        let u = 1.0 - v - w;
+        let position = u * mesh.positions[a] + v * mesh.positions[b] + w * mesh.positions[c];
+        let normal = u * mesh.normals[a] + v * mesh.normals[b] + w * mesh.normals[c];
+        SurfacePoint {
+            object,
+            triangle,
+            point: pose.transform_point3(position),
+            // Motions are rigid, so normals turn as vectors do.
+            normal: pose.transform_vector3(normal).normalize(),
+            uv: u * mesh.uvs[a] + v * mesh.uvs[b] + w * mesh.uvs[c],
+        }
+    }
+
+    fn met(&self, surface: SurfacePoint, ray: &Ray, front: bool) -> Hit {
+        let SurfacePoint { object, triangle, point, normal, uv } = surface;
+        let normal = face_forward(normal, ray.direction);
+        let distance = (point - ray.origin).dot(ray.direction);
+        Hit { object, triangle, point, normal, uv, front, distance }
+    }
+}
+
+/// A [`Hit`] before it is known from where it is seen.
+struct SurfacePoint {
+    object: ObjectId,
+    triangle: u32,
+    point: Vec3,
+    normal: Vec3,
+    uv: Vec2,
+}
+
+impl Shape {
+    fn at(&self, point: Vec3) -> SurfacePoint {
+        let normal = self.sphere.normal(point);
+        SurfacePoint { object: self.object, triangle: 0, point, normal, uv: self.sphere.uv(point) }
+    }
+}
