@@ -1,0 +1,53 @@
+"""Charts of rows: speed against accuracy."""
+
+import matplotlib.pyplot as plt
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from .figure import QUIET
+
+# Okabe & Ito's palette: told apart by the colour-blind too.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+MARKERS = "osD^vP"
+
+
+def speed_against_accuracy(rows_by_scene: dict[str, list[dict]], floor: str = "none") -> plt.Figure:
+    """One panel a scene: GPU ms of a frame (log) against the share of mirror pixels that are bad.
+
+    The method `floor` draws the frame without reflections: a line, not a point.
+    """
+    drawn = [r for rows in rows_by_scene.values() for r in rows if r["method"] != floor]
+    cases = dict.fromkeys(row["case"] for row in drawn)
+    style = {case: (COLOURS[i % 6], MARKERS[i % 6]) for i, case in enumerate(cases)}
+    count = len(rows_by_scene)
+    plot, axes = plt.subplots(
+        1, count, figsize=(2.9 * count + 0.6, 3.5), sharey=True, squeeze=False, layout="constrained"
+    )
+    plot.get_layout_engine().set(rect=(0, 0.12, 1, 0.88))
+    for axis, (scene, rows) in zip(axes[0], rows_by_scene.items(), strict=True):
+        for row in rows:
+            if row["method"] == floor:
+                axis.axvline(row["frame_gpu_ms"]["median"], color=QUIET, lw=1, ls=":")
+            else:
+                _point(axis, row, *style[row["case"]])
+        size = "x".join(str(n) for n in rows[0]["size"])
+        axis.set(title=f"{scene}, {size}", xscale="log", ylim=(-4, 104), xlabel="frame, GPU ms (log)")
+        axis.grid(True, which="both", color="#e7eaee", lw=0.6)
+        axis.margins(x=0.4)
+        axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.xaxis.set_major_formatter("{x:g}")
+        axis.xaxis.set_minor_formatter(NullFormatter())
+    axes[0][0].set_ylabel("bad at 1 px, % of mirror pixels\n(lower is better)")
+    handles = [
+        plt.Line2D([], [], color=c, marker=m, ls="", label=case) for case, (c, m) in style.items()
+    ]
+    handles.append(plt.Line2D([], [], color=QUIET, ls=":", label="frame without reflections"))
+    plot.legend(handles=handles, loc="lower center", ncols=len(handles), bbox_to_anchor=(0.5, 0.03))
+    return plot
+
+
+def _point(axis: plt.Axes, row: dict, colour: str, marker: str) -> None:
+    time = row["frame_gpu_ms"]
+    low, high = time["ci95"]
+    spread = [[max(time["median"] - low, 0)], [max(high - time["median"], 0)]]
+    bad = 100 * row["accuracy"]["bad_share"]["1"]
+    axis.errorbar(time["median"], bad, xerr=spread, fmt=marker, color=colour, ms=7, capsize=3)

@@ -1,0 +1,107 @@
+"""What frames say about objects: which are seen, and how far from their place they are drawn.
+
+The binary judges whole frames; some figures ask about one object, which the layers answer.
+"""
+
+import numpy as np
+
+from .exr import Frame
+
+ENOUGH_PIXELS = 4
+"""An object counts as visible from this many pixels on."""
+
+CHROMA_STEP = 0.01
+"""Shades of r:g:b (which sum to 1) closer than this are the same."""
+
+
+def object_ids(row: dict) -> dict[str, int]:
+    """Ids by name: the row lists the scene's objects in the order of their ids."""
+    return {name: i for i, name in enumerate(row["scene"]["objects"])}
+
+
+def seen_in_mirrors(frame: Frame, objects: dict[str, int]) -> set[str]:
+    """The objects a mirror of the frame shows."""
+    return {name for name, i in objects.items() if frame.shows(i).sum() >= ENOUGH_PIXELS}
+
+
+def seen_directly(frame: Frame, references: list[Frame], objects: dict[str, int]) -> set[str]:
+    """The objects seen without a mirror, told by their colour.
+
+    Frames hold no object ids outside mirrors. Where every object has a colour of its own, the shades
+    of r:g:b that the mirrors of the reference frames show of it tell it from the others: light and
+    shadow move a shade by less than the objects differ. An object that none of the mirrors shows
+    cannot be recognised.
+    """
+    outside = _chroma(frame.colour[~frame.mirror & np.isfinite(frame.depth)])
+    seen = set()
+    for name, object_id in objects.items():
+        shades = np.concatenate([_shades(r.reflection[r.shows(object_id)]) for r in references])
+        known = np.zeros(len(outside), bool)
+        for shade in shades:
+            known |= np.abs(outside - shade).max(axis=-1) < CHROMA_STEP
+        if known.sum() >= ENOUGH_PIXELS:
+            seen.add(name)
+    return seen
+
+
+def _chroma(colour: np.ndarray) -> np.ndarray:
+    return colour / np.maximum(colour.sum(axis=-1, keepdims=True), 1e-6)
+
+
+def _shades(colour: np.ndarray) -> np.ndarray:
+    """The different r:g:b among the colours, to a step."""
+    return np.unique(np.round(_chroma(colour) / CHROMA_STEP), axis=0) * CHROMA_STEP
+
+
+def displacement(ours: Frame, truth: Frame, object_id: int, samples: int = 500) -> tuple:
+    """How far ours draws an object's points from where the truth does.
+
+    For about `samples` pixels of ours that show the object, evenly spread: the distance in pixels to
+    the pixel in which the truth shows the nearest point of it, if that is the same point to within
+    the spacing of the truth's own points; else the truth does not see it. Good to half a pixel.
+
+    Returns (displacement in pixels, the points shown, n x 3, metres), of equal length.
+    """
+    targets = truth.shows(object_id)
+    if not targets.any() or not ours.shows(object_id).any():
+        return np.empty(0), np.empty((0, 3))
+    target_pixels, target_points = _pixels_points(truth, targets)
+    pixels, points = _pixels_points(ours, ours.shows(object_id))
+    step = -(-len(points) // samples)
+    pixels, points = pixels[::step], points[::step]
+    spacing = _spacing(truth, targets)
+    nearest = np.empty(len(points), np.int64)
+    squared = np.empty(len(points))
+    for start in range(0, len(points), 32):  # blocks, so that the table of distances stays small
+        block = slice(start, start + 32)
+        table = ((points[block, None, :] - target_points[None, :, :]) ** 2).sum(-1)
+        nearest[block] = table.argmin(axis=1)
+        squared[block] = table.min(axis=1)
+    met = squared <= (1.5 * spacing[nearest]) ** 2
+    moved = np.linalg.norm(pixels - target_pixels[nearest], axis=1)
+    return moved[met], points[met]
+
+
+def _pixels_points(frame: Frame, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    ys, xs = np.nonzero(mask)
+    return np.stack([xs, ys], axis=1).astype(np.float64), frame.point[mask].astype(np.float64)
+
+
+def _spacing(frame: Frame, mask: np.ndarray) -> np.ndarray:
+    """Per true pixel: distance to the point the pixel to the right, left, below or above shows,
+    the largest of those on the same object."""
+    result = np.zeros(mask.shape)
+    for axis in (0, 1):
+        apart = np.linalg.norm(np.diff(frame.point, axis=axis), axis=-1)
+        here, beside = ((slice(None),) * axis + (part,) for part in (slice(-1), slice(1, None)))
+        apart *= mask[here] & mask[beside]
+        for part in (here, beside):
+            result[part] = np.maximum(result[part], apart)
+    return result[mask]
+
+
+def distance_to_mirror(frame: Frame) -> float:
+    """Metres from the camera to the nearest point of a mirror, along the view direction."""
+    return float(frame.depth[frame.mirror].min())
+
+

@@ -1,0 +1,98 @@
+"""Picture figures: the truth beside a method, the error between them, close-ups and numbers."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.patches import Rectangle
+
+from . import images
+from .figure import Figure
+from .runs import Run
+from .text import accuracy_lines
+
+FRAME_COLOURS = ("#e8590c", "#0b7285")
+"""Of the close-ups; they stand out on light and dark alike."""
+
+COLUMN_IN = 3.5
+
+
+def comparison(figure: Figure, truth: Run, label: str, method: Run) -> None:
+    """Columns: truth, method, colour error over the mirror. Below each, the same two close-ups: the
+    squares, a fifth of the mirror wide, where the method errs most.
+    """
+    figure.cite(truth, method)
+    traced, ours = truth.frame(), method.frame()
+    error = images.colour_error(ours.colour, traced.colour)
+    pictures = (
+        images.to_srgb(traced.colour),
+        images.to_srgb(ours.colour),
+        images.heat(error, traced.mirror),
+    )
+    titles = ("ray-traced truth", label, "colour error over the mirror")
+    boxes = _close_ups(error, traced.mirror)
+    height, width = error.shape
+    plot, axes = plt.subplots(
+        2,
+        3,
+        figsize=(3 * COLUMN_IN, COLUMN_IN * (height / width + 0.5) + 1.3),
+        gridspec_kw={"height_ratios": [height / width, 0.5]},
+        layout="constrained",
+    )
+    plot.get_layout_engine().set(rect=(0, 0.045, 1, 0.945), h_pad=0.02, w_pad=0.03)
+    for (above, below), title, picture in zip(axes.T, titles, pictures, strict=True):
+        _picture(above, picture, title, boxes)
+        _zooms(below, picture, boxes)
+    axes[1, 1].text(
+        0.5, -0.06, accuracy_lines(method.row), transform=axes[1, 1].transAxes, ha="center", va="top"
+    )
+    _colour_bar(plot, axes[1, 2])
+    figure.compare(label, *pictures)
+    figure.plot = plot
+
+
+def single(figure: Figure, run: Run, label: str) -> None:
+    """One picture, for a figure that has nothing to be compared with."""
+    figure.cite(run)
+    picture = images.to_srgb(run.frame().colour)
+    height, width, _ = picture.shape
+    plot, axis = plt.subplots(figsize=(5.2, 5.2 * height / width + 0.5), layout="constrained")
+    plot.get_layout_engine().set(rect=(0, 0.04, 1, 0.945))
+    _picture(axis, picture, label, [])
+    figure.plot = plot
+
+
+def _close_ups(error: np.ndarray, mask: np.ndarray) -> list[tuple]:
+    left, top, right, bottom = images.box_around(mask)
+    side = max(8, min(right - left, bottom - top) // 5)
+    return images.worst_boxes(error, mask, side, len(FRAME_COLOURS))
+
+
+def _show(axis: plt.Axes, picture: np.ndarray) -> None:
+    axis.imshow(picture, interpolation="nearest")
+    axis.set(xticks=[], yticks=[])
+    axis.spines[:].set_visible(False)
+
+
+def _picture(axis: plt.Axes, picture: np.ndarray, title: str, boxes: list[tuple]) -> None:
+    _show(axis, picture)
+    axis.set_title(title)
+    for (left, top, right, bottom), colour in zip(boxes, FRAME_COLOURS, strict=False):
+        axis.add_patch(
+            Rectangle((left, top), right - left, bottom - top, fill=False, ec=colour, lw=1.3)
+        )
+
+
+def _zooms(axis: plt.Axes, picture: np.ndarray, boxes: list[tuple]) -> None:
+    axis.axis("off")
+    for i, ((left, top, right, bottom), colour) in enumerate(zip(boxes, FRAME_COLOURS, strict=True)):
+        inset = axis.inset_axes([i * 0.5 + 0.005, 0.0, 0.49, 1.0])
+        _show(inset, picture[top:bottom, left:right])
+        inset.spines[:].set(visible=True, color=colour, linewidth=2)
+
+
+def _colour_bar(plot: plt.Figure, axis: plt.Axes) -> None:
+    scale = plt.cm.ScalarMappable(plt.Normalize(0, images.ERROR_FULL_SCALE), "magma")
+    place = axis.inset_axes([0.1, -0.11, 0.8, 0.05])
+    bar = plot.colorbar(scale, cax=place, orientation="horizontal")
+    bar.outline.set_visible(False)
+    bar.ax.tick_params(labelsize=7, length=2, pad=1)
+    bar.set_label("mean absolute difference as displayed; grey: no mirror", fontsize=7, labelpad=1)

@@ -1,0 +1,131 @@
+"""Runs of the binary, kept by content: the same request on the same build and scenes runs once.
+
+A run lives in `out/.runs/<key>/`: the rows it printed (`rows.jsonl`) and the files it wrote
+(`files/`). It is made aside and renamed, so an interrupted one leaves nothing behind that counts.
+"""
+
+import functools
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from . import paths
+from .exr import Frame, read_frame
+
+SCHEMA_VERSION = 1
+
+
+class RunFailed(RuntimeError):
+    """The binary refused or failed; the message is its own."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """Rows and files of one call of the binary."""
+
+    rows: list[dict]
+    files: Path
+
+    @property
+    def row(self) -> dict:
+        """The only row of a run that has one."""
+        if len(self.rows) != 1:
+            raise ValueError(f"{self.files.parent} has {len(self.rows)} rows, expected one")
+        return self.rows[0]
+
+    def frame(self, number: int | None = None) -> Frame:
+        """The frame of that number; without one, the only frame."""
+        return read_frame(self.exr(number))
+
+    def exr(self, number: int | None = None) -> Path:
+        """Frames are told apart by the last number in their file names."""
+        found = [p for p in sorted(self.files.rglob("*.exr")) if "dump" not in p.parts]
+        if number is not None:
+            found = [p for p in found if _last_number(p.stem) == number]
+        if len(found) != 1:
+            wanted = "one EXR" if number is None else f"one EXR of frame {number}"
+            raise FileNotFoundError(f"expected {wanted} below {self.files}, found {len(found)}")
+        return found[0]
+
+
+def _last_number(stem: str) -> int | None:
+    numbers = re.findall(r"\d+", stem)
+    return int(numbers[-1]) if numbers else None
+
+
+def render(scene: str, case: str, *, frame: int = 0, size: str = "1280x720", dump: str = "") -> Run:
+    """Draw one frame of one case with its evidence, judged against the truth unless it is the truth;
+    the run has one row and one frame."""
+    judged = 0 if re.split("[@:]", case)[0] == "truth" else 1
+    arguments = ["render", "--scene", scene, "--case", case, "--frame", str(frame)]
+    arguments += ["--size", size, "--record", "full", "--truth-frames", str(judged)]
+    return _run(arguments + (["--dump", dump] if dump else []))
+
+
+def bench(scene: str, cases: list[str], *, size: str, frames: str, repeat: int) -> Run:
+    """Time and judge cases on a scene; one row a case."""
+    arguments = ["bench", "--scene", scene, "--size", size, "--frames", frames]
+    arguments += ["--repeat", str(repeat)]
+    for case in cases:
+        arguments += ["--case", case]
+    return _run(arguments)
+
+
+def _run(arguments: list[str]) -> Run:
+    folder = paths.out() / ".runs" / _key(arguments)
+    if not folder.is_dir():
+        _make(arguments, folder)
+    rows = [json.loads(line) for line in (folder / "rows.jsonl").read_text().splitlines()]
+    for row in rows:
+        if row["schema_version"] != SCHEMA_VERSION:
+            raise RunFailed(f"row of schema {row['schema_version']}, these figures read {SCHEMA_VERSION}")
+    return Run(rows, folder / "files")
+
+
+def _make(arguments: list[str], folder: Path) -> None:
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    aside = Path(tempfile.mkdtemp(prefix="making-", dir=folder.parent))
+    try:
+        command = [str(paths.binary()), *arguments, "--json", "--out", str(aside / "files")]
+        print("  mirrorbench " + " ".join(arguments), file=sys.stderr, flush=True)
+        (aside / "files").mkdir()
+        done = subprocess.run(command, stdout=subprocess.PIPE, cwd=paths.ROOT, check=False)
+        if done.returncode != 0:
+            # Its one-line message is already on stderr, which is not captured.
+            raise RunFailed(f"mirrorbench {' '.join(arguments)}: exit {done.returncode}")
+        (aside / "rows.jsonl").write_bytes(done.stdout)
+        try:
+            os.rename(aside, folder)
+        except OSError:
+            if not folder.is_dir():  # not simply made by somebody else meanwhile
+                raise
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)
+
+
+def _key(arguments: list[str]) -> str:
+    digest = hashlib.sha256(_ground())
+    digest.update("\0".join(arguments).encode())
+    return digest.hexdigest()[:24]
+
+
+@functools.cache
+def _ground() -> bytes:
+    """Hash of what every run stands on: the binary, the scenes and assets, the devices offered."""
+    digest = hashlib.sha256(paths.binary().read_bytes())
+    for path in sorted(p for p in paths.SCENES.rglob("*") if p.is_file()):
+        digest.update(str(path.relative_to(paths.SCENES)).encode() + b"\0" + path.read_bytes())
+    devices = subprocess.run(
+        [str(paths.binary()), "list", "devices", "--json"], stdout=subprocess.PIPE, check=False
+    )
+    if devices.returncode != 0:
+        raise RunFailed(f"mirrorbench list devices: exit {devices.returncode}")
+    digest.update(devices.stdout)
+    return digest.digest()

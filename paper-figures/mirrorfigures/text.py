@@ -1,0 +1,32 @@
+"""Sentences about rows."""
+
+
+def accuracy_lines(row: dict) -> str:
+    """The headline and the percentiles of a row, with the share they speak of."""
+    accuracy = row["accuracy"]
+    displaced = accuracy["displacement_px"]
+    bad = f"bad at 1 px: {100 * accuracy['bad_share']['1']:.1f} % of mirror pixels"
+    if displaced is None:  # nothing is shown where it could be
+        return bad
+    return (
+        f"{bad}\ndisplaced {displaced['median']:.1f} px median, {displaced['p95']:.1f} px p95 "
+        f"(of {100 * accuracy['covered']:.0f} %)"
+    )
+
+
+def verdict(row: dict) -> str:
+    """One row's accuracy in words."""
+    accuracy = row["accuracy"]
+    displaced = accuracy["displacement_px"]
+    width, height = row["size"]
+    sentences = (
+        f"At {width} x {height}, {100 * accuracy['bad_share']['1']:.1f} % of the mirror's pixels show "
+        f"something else than the truth does or show it more than a pixel away; "
+        f"{100 * accuracy['wrong_object']:.1f} % are of the wrong object."
+    )
+    if displaced is None:
+        return sentences
+    return (
+        f"{sentences} What is shown is displaced by {displaced['median']:.1f} px in the median, "
+        f"{displaced['p95']:.1f} px at the 95th percentile and {displaced['max']:.1f} px at most."
+    )

@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""A stand-in for the binary: the same files and rows from a toy scene, so that the figure library is
+tested without a Vulkan device. A mirror sphere on a chequered floor among diffuse balls.
+"""
+
+import argparse
+import json
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import OpenEXR
+
+CENTRE, RADIUS = np.array([0.0, 1.0, 0.0]), 1.0
+NO_OBJECT = 0xFFFFFFFF
+COLOURS = np.array([[0.8, 0.1, 0.1], [0.1, 0.6, 0.1], [0.1, 0.2, 0.8], [0.8, 0.7, 0.1]])
+FLOOR = len(COLOURS)
+MIRROR = FLOOR + 1
+FACES = [  # +X -X +Y -Y +Z -Z: forward, right, down of each face's image
+    ((1, 0, 0), (0, 0, -1), (0, -1, 0)),
+    ((-1, 0, 0), (0, 0, 1), (0, -1, 0)),
+    ((0, 1, 0), (1, 0, 0), (0, 0, 1)),
+    ((0, -1, 0), (1, 0, 0), (0, 0, -1)),
+    ((0, 0, 1), (1, 0, 0), (0, -1, 0)),
+    ((0, 0, -1), (-1, 0, 0), (0, -1, 0)),
+]
+
+
+def balls() -> list[tuple[np.ndarray, float]]:
+    turns = np.radians([-60, -20, 20, 60])
+    return [(np.array([1.8 * np.sin(a), 0.8, 1.8 * np.cos(a)]), 0.3) for a in turns]
+
+
+def hit_sphere(origin, direction, centre, radius):
+    to = origin - centre
+    b = (to * direction).sum(-1)
+    root = b * b - (to * to).sum(-1) + radius**2
+    t = -b - np.sqrt(np.maximum(root, 0))
+    return np.where((root > 0) & (t > 1e-4), t, np.inf)
+
+
+def trace(origin, direction):
+    """Object, point and colour of the diffuse scene along unit rays."""
+    hits = [hit_sphere(origin, direction, *ball) for ball in balls()]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = -origin[..., 1] / direction[..., 1]
+    hits.append(np.where(t > 1e-4, t, np.inf))
+    t = np.min(hits, axis=0)
+    found = np.isfinite(t)
+    obj = np.where(found, np.argmin(hits, axis=0), NO_OBJECT).astype(np.uint32)
+    point = np.where(found[..., None], origin + direction * np.where(found, t, 0)[..., None], direction)
+    sky = np.full(direction.shape, [0.3, 0.5, 0.7]) + 0.3 * direction[..., 1:2]
+    checker = (np.floor(point[..., 0] * 2) + np.floor(point[..., 2] * 2)) % 2
+    colour = np.where(found[..., None], (0.35 + 0.3 * checker)[..., None], sky)
+    for i, (centre, radius) in enumerate(balls()):
+        light = 0.4 + 0.6 * np.clip((point - centre)[..., 1] / radius, 0, 1)
+        colour = np.where((obj == i)[..., None], COLOURS[i] * light[..., None], colour)
+    return obj, point, colour
+
+
+def draw(case: str, width: int, height: int, frame: int) -> dict[str, np.ndarray]:
+    eye = np.array([0.0, 1.6, 4.2 - 0.011 * frame])
+    x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+    rays = np.stack([(x - width / 2) / height, (height / 2 - y) / height - 0.12, np.full(x.shape, -0.87)], -1)
+    rays /= np.linalg.norm(rays, axis=-1, keepdims=True)
+    eyes = np.broadcast_to(eye, rays.shape)
+    t = hit_sphere(eyes, rays, CENTRE, RADIUS)
+    obj, point, colour = trace(eyes, rays)
+    direct = np.where(obj == NO_OBJECT, np.inf, np.linalg.norm(point - eyes, axis=-1))
+    mirror = t < direct
+    position = eyes + rays * np.where(mirror, t, 0)[..., None]
+    normal = np.where(mirror[..., None], (position - CENTRE) / RADIUS, 0.0)
+    out = rays - 2 * (rays * normal).sum(-1, keepdims=True) * normal
+    start = position
+    if "surface" in case:
+        out = normal
+    if case != "truth":
+        start = np.broadcast_to(CENTRE, rays.shape)
+    shown, shown_point, reflection = trace(start, out)
+    final = np.where(mirror[..., None], 0.9 * reflection, colour)
+    layers = {"Z": np.minimum(direct, t) * -rays[..., 2]}
+    for i, axis in enumerate("RGB"):
+        layers[axis] = final[..., i]
+        layers[f"reflection.{axis}"] = np.where(mirror, reflection[..., i], 0)
+    for i, axis in enumerate("XYZ"):
+        layers[f"shown.{axis}"] = np.where(mirror, shown_point[..., i], 0)
+        layers[f"normal.{axis}"] = normal[..., i]
+    layers = {name: np.ascontiguousarray(a, np.float32) for name, a in layers.items()}
+    status = np.where(shown == NO_OBJECT, 2, 1)
+    ids = {"shown.object": shown, "shown.order": 1, "shown.status": status, "reflector.id": MIRROR}
+    for name, value in ids.items():
+        off = 0 if name in ("shown.order", "shown.status") else NO_OBJECT
+        layers[name] = np.where(mirror, value, off).astype(np.uint32)
+    return layers
+
+
+def cube(size: int) -> dict[str, np.ndarray]:
+    s = (np.arange(size) + 0.5) / size * 2 - 1
+    layers = {}
+    for face, (forward, right, down) in enumerate(np.array(FACES, float)):
+        rays = forward + s[None, :, None] * right + s[:, None, None] * down
+        rays /= np.linalg.norm(rays, axis=-1, keepdims=True)
+        colour = trace(np.broadcast_to(CENTRE, rays.shape), rays)[2]
+        for i, axis in enumerate("RGB"):
+            layers[f"face{face}.{axis}"] = np.ascontiguousarray(colour[..., i], np.float32)
+    return layers
+
+
+def save(path: Path, layers: dict[str, np.ndarray]) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    OpenEXR.File(header, layers).write(str(path))
+
+
+def row(scene: str, case: str, size: list[int], frame: int, timed: bool) -> dict:
+    names = ["column-{}", "object-{}"][scene == "lecture"]
+    objects = [names.format(i + 1) for i in range(FLOOR)] + ["floor", "mirror"]
+    scale = {"none": 1.0, "truth": 0.0}.get(case, 1.6 + 0.05 * len(case)) * (2 if timed else 1)
+    accuracy = {
+        "bad_share": {"0.5": 0.9, "1": 1.0 if case == "none" else 0.72 - 0.01 * len(case), "2": 0.5, "4": 0.3},
+        "covered": 0.93, "missing": 0.0, "spurious": 0.02, "wrong_object": 0.11, "wrong_depth": 0.05,
+        "unreachable": 0.01, "footprint_mismatch": 0.0004,
+        "displacement_px": {"median": 21.4, "p95": 74.2, "max": 132.8},
+        "angle_deg": {"median": 5.0, "p95": 21.0, "max": 44.0},
+        "relmse": 0.2, "relmse_shading": 0.19, "psnr": 17.2, "flip": {"mean": 0.2, "p95": 0.5, "ppd": 67.0, "exposure": 1.0},
+    }  # fmt: skip
+    device = {"name": "toy device", "driver": "toy 1.0", "api": "1.3.0", "is_software": True}
+    time = {"median": scale, "min": 0.9 * scale, "p95": 1.3 * scale, "n": 20,
+            "ci95": [0.95 * scale, 1.06 * scale], "with_prepare": 2 * scale}  # fmt: skip
+    gpu = {"median": scale / 2, "min": scale / 2, "p95": scale / 2}
+    steps = ("direct-view/shade", f"{case.split(':')[0]}/lookup")
+    return {
+        "schema_version": 1, "run": "toy", "commit": "0123456789abcdef",
+        "scene": {"name": scene, "hash": "0", "triangles": 12, "vertices": 8, "objects": objects},
+        "case": case, "method": case.split(":")[0], "variant": "published", "params": {},
+        "fallback": "none", "size": size, "frames": [frame],
+        "record": "full", "truth_frames": [frame], "device": device, "software_timing": True,
+        "reflector_pixels": 1000.0,
+        "prepare": {"calls": 1, "gpu_ms": 3.2, "cpu_ms": 0.1, "bytes": 1 << 20},
+        "frame_gpu_ms": time if timed else None,
+        "passes": [
+            {"name": s, "prepare": False, "gpu_ms": gpu, "cpu_ms": 0.0, "invocations": 100} for s in steps
+        ],
+        "counters": {}, "accuracy": None if case == "truth" else accuracy, "stability": None,
+        "clock": {"before_mhz": None, "after_mhz": None, "throttled": 0, "load": 0.1},
+    }  # fmt: skip
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("command", choices=["list", "render", "bench", "doctor"])
+    parser.add_argument("what", nargs="?")
+    parser.add_argument("--scene")
+    parser.add_argument("--case", action="append")
+    parser.add_argument("--size", default="160x90")
+    parser.add_argument("--frame", type=int, default=0)
+    parser.add_argument("--out", type=Path)
+    parser.add_argument("--dump", default="")
+    for ignored in ("--frames", "--repeat", "--record", "--truth-frames"):
+        parser.add_argument(ignored)
+    parser.add_argument("--json", action="store_true")
+    args = parser.parse_args()
+    if args.command == "list":
+        print("toy device")
+    if log := os.environ.get("FAKE_MIRRORBENCH_LOG"):
+        with open(log, "a", encoding="utf-8") as file:
+            file.write(" ".join(sys.argv[1:]) + "\n")
+    if args.scene == "no-such-scene":
+        print("no scene 'no-such-scene'; there are columns, lecture", file=sys.stderr)
+        return 2
+    # Tests ask for small pictures whatever the figure wants.
+    size = [int(n) for n in os.environ.get("FAKE_MIRRORBENCH_SIZE", args.size).split("x")]
+    for case in args.case or []:
+        if args.command == "render":
+            save(args.out / f"frame-{args.frame:04}.exr", draw(case, *size, args.frame))
+            if args.dump == "environment-map/capture":
+                save(args.out / "dump" / args.dump / "radiance.exr", cube(128))
+        print(json.dumps(row(args.scene, case, size, args.frame, args.command == "bench")))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
