@@ -4,6 +4,9 @@
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
 
+# Where rustup puts cargo; a shell opened before its installation does not know.
+PATH=$PATH:${CARGO_HOME:-${HOME:-}/.cargo}/bin
+
 # Where cargo puts the binary, and the Python that has the figures' packages.
 mirrorbench=${CARGO_TARGET_DIR:-$root/target}/release/mirrorbench
 python=$root/.venv/bin/python

@@ -37,14 +37,15 @@ def main(arguments: list[str]) -> int:
 
 def draw(script: registry.Script) -> str:
     """Run one script in its own process. Returns what it said if it failed, else nothing."""
-    done = subprocess.run(
-        [sys.executable, str(script.path)], stderr=subprocess.PIPE, text=True, check=False
-    )
-    sys.stderr.write(done.stderr)
-    if done.returncode == 0:
+    command = [sys.executable, str(script.path)]
+    said = []
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        for line in process.stderr:
+            sys.stderr.write(line)
+            said.append(line)
+    if process.returncode == 0:
         return ""
-    lines = done.stderr.strip().splitlines()
-    return "\n".join(lines[-3:]) or f"exit {done.returncode}"
+    return "".join(said[-3:]).strip() or f"exit {process.returncode}"
 
 
 if __name__ == "__main__":

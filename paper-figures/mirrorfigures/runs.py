@@ -96,10 +96,9 @@ def _make(arguments: list[str], folder: Path) -> None:
         command = [str(paths.binary()), *arguments, "--json", "--out", str(aside / "files")]
         print("  mirrorbench " + " ".join(arguments), file=sys.stderr, flush=True)
         (aside / "files").mkdir()
-        done = subprocess.run(command, stdout=subprocess.PIPE, cwd=paths.ROOT, check=False)
+        done = subprocess.run(command, capture_output=True, cwd=paths.ROOT, check=False)
         if done.returncode != 0:
-            # Its one-line message is already on stderr, which is not captured.
-            raise RunFailed(f"mirrorbench {' '.join(arguments)}: exit {done.returncode}")
+            raise RunFailed(_complaint(arguments, done))
         (aside / "rows.jsonl").write_bytes(done.stdout)
         try:
             os.rename(aside, folder)
@@ -108,6 +107,12 @@ def _make(arguments: list[str], folder: Path) -> None:
                 raise
     finally:
         shutil.rmtree(aside, ignore_errors=True)
+
+
+def _complaint(arguments: list[str], done: subprocess.CompletedProcess) -> str:
+    """What was asked, and the last line the binary said about it."""
+    said = done.stderr.decode(errors="replace").strip().splitlines()
+    return f"mirrorbench {' '.join(arguments)}: exit {done.returncode}: {said[-1] if said else ''}"
 
 
 def _key(arguments: list[str]) -> str:
@@ -122,10 +127,9 @@ def _ground() -> bytes:
     digest = hashlib.sha256(paths.binary().read_bytes())
     for path in sorted(p for p in paths.SCENES.rglob("*") if p.is_file()):
         digest.update(str(path.relative_to(paths.SCENES)).encode() + b"\0" + path.read_bytes())
-    devices = subprocess.run(
-        [str(paths.binary()), "list", "devices", "--json"], stdout=subprocess.PIPE, check=False
-    )
+    arguments = ["list", "devices", "--json"]
+    devices = subprocess.run([str(paths.binary()), *arguments], capture_output=True, check=False)
     if devices.returncode != 0:
-        raise RunFailed(f"mirrorbench list devices: exit {devices.returncode}")
+        raise RunFailed(_complaint(arguments, devices))
     digest.update(devices.stdout)
     return digest.digest()

@@ -90,10 +90,12 @@ def report(figure, samples):
         rows.append([f"{camera_m:.2f}", *cells])
     header = ["camera, m", "inner median, px", "inner p95, px", "outer median, px", "outer p95, px"]
     figure.table("Displacement of the columns in the environment map", header, rows)
-    first, last = samples[0], samples[-1]
+    (far, far_px), (near, near_px) = (
+        (s[0], s[1][s[3] < RING_LIMIT_M]) for s in (samples[0], samples[-1])
+    )
     figure.finding(
-        f"From {first[0]:.1f} m the columns are {np.median(first[1]):.0f} px from their place in the "
-        f"median, from {last[0]:.1f} m {np.median(last[1]):.0f} px (1280 x 720)."
+        f"The inner ring's columns are {np.median(far_px):.0f} px from their place in the median seen "
+        f"from {far:.1f} m, and {np.median(near_px):.0f} px seen from {near:.1f} m (1280 x 720)."
     )
 
 

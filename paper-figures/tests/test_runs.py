@@ -39,7 +39,7 @@ def test_a_changed_binary_runs_again(fake):
 
 
 def test_a_failure_names_the_exit_code_and_leaves_nothing(fake):
-    with pytest.raises(runs.RunFailed, match="exit 2"):
+    with pytest.raises(runs.RunFailed, match="exit 2: no scene 'no-such-scene'; there are"):
         render("no-such-scene", "truth")
     assert list((paths.out() / ".runs").iterdir()) == []
 
