@@ -114,6 +114,7 @@ impl ReflectionMethod for EnvironmentMap {
             record
                 .bind(view.bind(scene.bind(pass)))
                 .uniform("params", &params)
+                .optional()
                 .sample("capture_radiance", &map.radiance)
                 .sample("capture_point", &map.point)
                 .optional()
