@@ -2,6 +2,8 @@
 // Rust twins: scene/shading.rs for the functions, stages/scene.rs for the structs.
 #define_import_path bindings::scene
 
+#import common::angle::{PI, angle}
+
 struct Vertex {
     position: vec3<f32>,
     u: f32,
@@ -150,8 +152,6 @@ fn shade(material: Material, normal: vec3<f32>, uv: vec2<f32>) -> vec3<f32> {
     return albedo(material, uv) * (light.ambient + sun);
 }
 
-const PI: f32 = 3.14159265358979;
-
 // Radiance from infinitely far away; `d` is a unit vector.
 fn environment(d: vec3<f32>) -> vec3<f32> {
     switch light.environment {
@@ -162,8 +162,8 @@ fn environment(d: vec3<f32>) -> vec3<f32> {
             return mix(light.horizon, light.nadir, -d.y);
         }
         case 2u: {
-            let u = 0.5 + atan2(d.x, -d.z) / (2.0 * PI);
-            let v = acos(clamp(d.y, -1.0, 1.0)) / PI;
+            let u = 0.5 + angle(d.x, -d.z) / (2.0 * PI);
+            let v = angle(length(d.xz), d.y) / PI;
             return bilinear(images[light.image], vec2(u, v), true);
         }
         default: {

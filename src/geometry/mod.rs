@@ -1,6 +1,7 @@
 //! Pure maths: rays, laws of reflection, shapes and their meshes, the camera. No scene, no GPU.
 
 pub mod alhazen;
+pub mod angle;
 pub mod bezier;
 pub mod bvh;
 pub mod camera;

@@ -3,7 +3,9 @@
 
 use std::f32::consts::{PI, TAU};
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec3Swizzles};
+
+use crate::geometry::angle::angle;
 
 use super::{Environment, Image, Material, ObjectId, Pattern, Scene};
 
@@ -55,8 +57,8 @@ pub fn environment(scene: &Scene, direction: Vec3) -> Vec3 {
 /// Image coordinates of a unit direction in a latitude-longitude image: -z in the middle, +y on
 /// top.
 pub fn lat_long(direction: Vec3) -> Vec2 {
-    let u = 0.5 + direction.x.atan2(-direction.z) / TAU;
-    let v = direction.y.clamp(-1.0, 1.0).acos() / PI;
+    let u = 0.5 + angle(direction.x, -direction.z) / TAU;
+    let v = angle(direction.xz().length(), direction.y) / PI;
     Vec2::new(u, v)
 }
 

@@ -1,0 +1,100 @@
+//! What tests on a real device share: a session that fails when the validation layers speak up or
+//! an object outlives it, and engines for small views.
+#![allow(dead_code, reason = "each test file uses its own part")]
+
+use std::sync::Arc;
+
+use mirrorbench::experiment::engine::{Engine, Fallback, RecordMode, RunOptions};
+use mirrorbench::gpu::{Device, ValidationLog};
+use mirrorbench::measure::{self, Accuracy, Maps};
+use mirrorbench::methods::{Case, METHODS, MethodInfo};
+use mirrorbench::scene::{FrameRecord, Moment, Scene};
+use mirrorbench::truth::{Tracer, TruthOptions};
+
+/// A device with validation and synchronization checks; its end is a check too.
+pub struct Session {
+    device: Option<Arc<Device>>,
+    log: ValidationLog,
+}
+
+impl Session {
+    /// No device is a failure, never a skip.
+    pub fn open() -> Session {
+        let device = Device::open("auto", true).expect("a Vulkan device with validation layers");
+        let log = device.validation();
+        Session { device: Some(device), log }
+    }
+
+    pub fn device(&self) -> &Arc<Device> {
+        self.device.as_ref().unwrap()
+    }
+
+    /// What is wrong at the end: objects still alive, messages heard, leaks heard on destruction.
+    pub fn faults(mut self) -> Vec<String> {
+        self.take_faults()
+    }
+
+    fn take_faults(&mut self) -> Vec<String> {
+        let Some(device) = self.device.take() else { return Vec::new() };
+        let alive = Arc::strong_count(&device) - 1;
+        drop(device);
+        let mut faults = self.log.messages();
+        if alive > 0 {
+            faults.push(format!("{alive} objects are still alive"));
+        }
+        faults
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        let faults = self.take_faults();
+        if !std::thread::panicking() {
+            assert!(faults.is_empty(), "{}", faults.join("\n"));
+        }
+    }
+}
+
+pub fn methods() -> Vec<&'static MethodInfo> {
+    METHODS.iter().collect()
+}
+
+pub fn options(size: [u32; 2]) -> RunOptions {
+    RunOptions {
+        size,
+        record: RecordMode::Full,
+        fallback: Fallback::None,
+        shader_dir: None,
+        dump: None,
+        seed: 0,
+    }
+}
+
+pub fn engine(session: &Session, scene: &Scene, case: &str, options: &RunOptions) -> Engine {
+    let case = Case::parse(case, &methods()).unwrap();
+    Engine::new(session.device(), scene, &case, &methods(), options).unwrap()
+}
+
+/// One frame of a case, with full records.
+pub fn frame(session: &Session, scene: &Scene, case: &str, size: [u32; 2], at: u32) -> FrameRecord {
+    let mut engine = engine(session, scene, case, &options(size));
+    engine.frame(&scene.at(at), true).unwrap().0
+}
+
+pub fn tracer<'s>(scene: &'s Scene, moment: &Moment) -> Tracer<'s> {
+    Tracer::new(scene, moment, TruthOptions::default())
+}
+
+/// A frame of a case against the truth.
+pub fn judged(
+    session: &Session,
+    scene: &Scene,
+    case: &str,
+    size: [u32; 2],
+    at: u32,
+) -> (FrameRecord, Accuracy, Maps) {
+    let tested = frame(session, scene, case, size, at);
+    let tracer = tracer(scene, &scene.at(at));
+    let (accuracy, maps) = measure::accuracy(&tracer.frame(size), &tested, &tracer).unwrap();
+    (tested, accuracy, maps)
+}

@@ -1,0 +1,179 @@
+//! Each method against the truth on small views: exact where it must be, inside a band where it
+//! errs (too good is suspicious), and in the order the papers claim.
+
+mod gpu_support;
+
+use std::collections::BTreeSet;
+
+use glam::{Vec2, Vec4Swizzles};
+use gpu_support::{Session, frame, judged, tracer};
+use mirrorbench::geometry::cube;
+use mirrorbench::scene::{self, FrameRecord, Scene, Status};
+
+const SIZE: [u32; 2] = [128, 96];
+
+/// A case, a scene, and the band its `bad_share` at 1 px lies in. Environment maps of a near scene
+/// are wrong nearly everywhere; what is right shows the environment or the far floor.
+const BANDS: [(&str, &str, [f64; 2]); 5] = [
+    ("environment-map", "sky", [0.0, 0.0]),
+    ("environment-map", "columns", [0.3, 0.75]),
+    ("environment-map", "patow-room", [0.8, 1.0]),
+    ("environment-map:index=surface", "patow-room", [0.9, 1.0]),
+    ("planar-mirror", "lecture", [0.0, 0.002]),
+];
+
+#[test]
+fn every_method_errs_within_its_band() {
+    let session = Session::open();
+    for (case, name, [low, high]) in BANDS {
+        let scene = scene::load(name).unwrap();
+        let (_, accuracy, _) = judged(&session, &scene, case, SIZE, 0);
+        let bad = accuracy.bad_share.one;
+        assert!(
+            (low..=high).contains(&bad),
+            "{case} on {name}: bad_share {bad}, not {low}..{high}"
+        );
+        // DESIGN 7: the footprints of rasteriser and tracer differ in at most 0.2 % of the pixels.
+        let mismatch = accuracy.footprint_mismatch;
+        assert!(mismatch <= 0.002, "{case} on {name}: footprint mismatch {mismatch}");
+    }
+}
+
+#[test]
+fn without_a_method_every_reflector_pixel_is_missing() {
+    let session = Session::open();
+    let scene = scene::load("columns").unwrap();
+    let (_, accuracy, _) = judged(&session, &scene, "none", SIZE, 0);
+    assert_eq!((accuracy.missing, accuracy.bad_share.four), (1.0, 1.0));
+}
+
+#[test]
+fn a_sky_alone_is_read_from_the_right_texels() {
+    let (session, scene) = (Session::open(), scene::load("sky").unwrap());
+    let texels = 512.0;
+    let tested = frame(&session, &scene, "environment-map", SIZE, 7);
+    let truth = tracer(&scene, &scene.at(7)).frame(SIZE);
+    let pixels = common(&truth, &tested);
+    assert!(pixels.len() > 1000, "only {} pixels", pixels.len());
+    for i in pixels {
+        assert_eq!(tested.record.ids[i].status(), Status::Environment);
+        let (mirrored, read) = (truth.record.point[i].xyz(), tested.record.point[i].xyz());
+        // Both on the face of the texel read, in texels; half a texel, and what the rasteriser's
+        // interpolation of the normal differs from the tracer's.
+        let (face, texel) = cube::face_uv(read);
+        let axis = cube::direction(face, Vec2::splat(0.5));
+        let exact = cube::face_uv(axis + (mirrored / mirrored.dot(axis) - axis) * 0.99).1;
+        let exact = 0.5 + (exact - 0.5) / 0.99;
+        let away = ((texel - exact) * texels).abs().max_element();
+        assert!(away <= 0.55, "pixel {i}: {away} texels from {mirrored} to {read}");
+        // The steepest change of this sky over one texel, and half-float rounding.
+        let change = 0.7 * 2.0 / texels + 1.0 / 1024.0;
+        let difference = (truth.record.radiance[i] - tested.record.radiance[i]).abs();
+        assert!(difference.max_element() <= change, "pixel {i}: colour off by {difference}");
+    }
+}
+
+#[test]
+fn a_flat_mirror_is_exact() {
+    let (session, scene) = (Session::open(), scene::load("lecture").unwrap());
+    let (_, accuracy, _) = judged(&session, &scene, "planar-mirror", [320, 160], 0);
+    let displacement = accuracy.displacement_px.unwrap();
+    assert!(displacement.p95 < 0.05, "{displacement:?}");
+    assert!(accuracy.covered > 0.998, "{accuracy:?}");
+}
+
+/// Numbers of the lecture's objects 1 to 4 among some pixels' objects.
+fn quiz_objects(scene: &Scene, objects: impl Iterator<Item = u32>) -> BTreeSet<u32> {
+    let number = |id: u32| {
+        let name = &scene.objects.get(id as usize)?.name;
+        name.strip_prefix("object-")?.parse().ok()
+    };
+    objects.filter_map(number).collect()
+}
+
+fn mirrored_objects(scene: &Scene, frame: &FrameRecord) -> BTreeSet<u32> {
+    quiz_objects(scene, frame.reflector_pixels().into_iter().map(|i| frame.record.ids[i].object))
+}
+
+#[test]
+fn the_lectures_quiz_has_the_lectures_answers() {
+    let (session, scene) = (Session::open(), scene::load("lecture").unwrap());
+    let size = [640, 320];
+    let truth = tracer(&scene, &scene.at(0)).frame(size);
+    assert_eq!(mirrored_objects(&scene, &truth), BTreeSet::from([2, 3, 4]));
+    let by_map = frame(&session, &scene, "environment-map", size, 0);
+    assert_eq!(mirrored_objects(&scene, &by_map), BTreeSet::from([1, 3, 4]));
+    let exact = frame(&session, &scene, "planar-mirror", size, 0);
+    assert_eq!(mirrored_objects(&scene, &exact), BTreeSet::from([2, 3, 4]));
+    for seen in [&truth, &by_map] {
+        let direct = (0..seen.object.len()).filter(|&i| seen.reflector[i] == scene::NO_OBJECT);
+        let direct = quiz_objects(&scene, direct.map(|i| seen.object[i]));
+        assert_eq!(direct, BTreeSet::from([3, 4]));
+    }
+}
+
+#[test]
+fn the_map_draws_near_columns_farther_off_the_nearer_the_camera() {
+    // The abstract of Martin & Popescu 2004: "hundreds of pixels away from its correct location".
+    let (session, scene) = (Session::open(), scene::load("columns-dolly").unwrap());
+    let [far, near] = [0, 185].map(|at| {
+        let (tested, _, maps) = judged(&session, &scene, "environment-map", [1280, 720], at);
+        let column = |i: &usize| {
+            let id = tested.record.ids[*i].object as usize;
+            // The ring of 1.6 m, 0.45 m from the mirror.
+            let name = scene.objects.get(id).map_or("", |o| o.name.as_str());
+            ["column-1", "column-2", "column-3", "column-4"].contains(&name)
+        };
+        let shown = tested.reflector_pixels().into_iter().filter(column);
+        let mut displaced: Vec<f32> =
+            shown.map(|i| maps.displacement_px[i]).filter(|d| d.is_finite()).collect();
+        assert!(displaced.len() > 500, "only {} pixels of columns", displaced.len());
+        displaced.sort_by(f32::total_cmp);
+        displaced[displaced.len() / 2]
+    });
+    assert!((15.0..40.0).contains(&far), "{far} px from 4 m");
+    assert!(near > 100.0, "{near} px from 1.4 m");
+}
+
+#[test]
+fn the_same_scene_gives_the_same_frame_twice() {
+    let (session, scene) = (Session::open(), scene::load("kitchen").unwrap());
+    let first = frame(&session, &scene, "environment-map", SIZE, 3);
+    assert_eq!(first, frame(&session, &scene, "environment-map", SIZE, 3));
+}
+
+#[test]
+fn hybrids_serve_each_reflector_with_its_own_method() {
+    let (session, scene) = (Session::open(), scene::load("two-spheres").unwrap());
+    let names: Vec<_> =
+        scene.reflectors().iter().map(|&o| scene.objects[o as usize].name.clone()).collect();
+    let case = format!("{}=environment-map;*=none", names[0]);
+    let hybrid = frame(&session, &scene, &case, SIZE, 0);
+    let whole = frame(&session, &scene, "environment-map", SIZE, 0);
+    let first = scene.reflectors()[0];
+    let mut seen = [0, 0];
+    for i in hybrid.reflector_pixels() {
+        let served = hybrid.reflector[i] == first;
+        seen[usize::from(served)] += 1;
+        let expected = if served { whole.record.ids[i] } else { scene::Ids::MISSING };
+        assert_eq!(hybrid.record.ids[i], expected);
+    }
+    assert!(seen.iter().all(|&n| n > 20), "{seen:?}");
+}
+
+fn common(a: &FrameRecord, b: &FrameRecord) -> Vec<usize> {
+    a.reflector_pixels().into_iter().filter(|&i| a.reflector[i] == b.reflector[i]).collect()
+}
+
+#[test]
+fn both_record_modes_draw_the_same_picture() {
+    let (session, scene) = (Session::open(), scene::load("patow-room").unwrap());
+    for case in ["environment-map", "environment-map:index=surface"] {
+        let full = frame(&session, &scene, case, SIZE, 0);
+        let mut options = gpu_support::options(SIZE);
+        options.record = mirrorbench::experiment::engine::RecordMode::Radiance;
+        let mut engine = gpu_support::engine(&session, &scene, case, &options);
+        let (radiance, _) = engine.frame(&scene.at(0), true).unwrap();
+        assert_eq!(full.colour, radiance.colour, "{case}");
+    }
+}
