@@ -177,3 +177,17 @@ fn both_record_modes_draw_the_same_picture() {
         assert_eq!(full.colour, radiance.colour, "{case}");
     }
 }
+
+#[test]
+fn the_passes_of_a_720p_frame_add_up_to_it() {
+    let (session, scene) = (Session::open(), scene::load("columns").unwrap());
+    let options = gpu_support::options([1280, 720]);
+    let mut engine = gpu_support::engine(&session, &scene, "environment-map", &options);
+    let moments: Vec<_> = (0..4).map(|at| scene.at(at)).collect();
+    for times in engine.burst(&moments).unwrap() {
+        assert!(!times.prepare.is_empty(), "the cube moves, so every frame prepares");
+        let sum: f64 = times.passes.iter().map(|p| p.gpu_ms).sum();
+        let share = sum / times.frame_gpu_ms;
+        assert!((0.95..=1.0).contains(&share), "{sum} of {} ms", times.frame_gpu_ms);
+    }
+}

@@ -32,7 +32,8 @@ fn folder() -> PathBuf {
 fn check(session: &Session, name: &str, picture: &Picture, actual: &Path) -> Result<(), String> {
     let blessed_path = folder().join(format!("{name}.png"));
     let driver_path = folder().join("driver.txt");
-    let driver = session.device().info().driver.clone();
+    let info = session.device().info();
+    let driver = format!("{}, {}", info.name, info.driver);
     if std::env::var_os("BLESS").is_some() {
         fs::create_dir_all(folder()).map_err(|e| e.to_string())?;
         fs::copy(actual, &blessed_path).map_err(|e| e.to_string())?;

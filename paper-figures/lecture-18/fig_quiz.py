@@ -29,7 +29,7 @@ def draw(figure):
     frames = {"ray-traced truth": truth.frame(), "environment map": mapped.frame()}
     traced_frame, mapped_frame = frames.values()
     ours = {
-        "directly": seen_directly(traced_frame, list(frames.values()), ids),
+        "directly": seen_directly(traced_frame, ids),
         "in the mirror, ray traced": seen_in_mirrors(traced_frame, ids),
         "in the mirror, environment map": seen_in_mirrors(mapped_frame, ids),
     }

@@ -10,9 +10,6 @@ from .exr import Frame
 ENOUGH_PIXELS = 4
 """An object counts as visible from this many pixels on."""
 
-CHROMA_STEP = 0.01
-"""Shades of r:g:b (which sum to 1) closer than this are the same."""
-
 
 def object_ids(row: dict) -> dict[str, int]:
     """Ids by name: the row lists the scene's objects in the order of their ids."""
@@ -24,33 +21,10 @@ def seen_in_mirrors(frame: Frame, objects: dict[str, int]) -> set[str]:
     return {name for name, i in objects.items() if frame.shows(i).sum() >= ENOUGH_PIXELS}
 
 
-def seen_directly(frame: Frame, references: list[Frame], objects: dict[str, int]) -> set[str]:
-    """The objects seen without a mirror, told by their colour.
-
-    Frames hold no object ids outside mirrors. Where every object has a colour of its own, the shades
-    of r:g:b that the mirrors of the reference frames show of it tell it from the others: light and
-    shadow move a shade by less than the objects differ. An object that none of the mirrors shows
-    cannot be recognised.
-    """
-    outside = _chroma(frame.colour[~frame.mirror & np.isfinite(frame.depth)])
-    seen = set()
-    for name, object_id in objects.items():
-        shades = np.concatenate([_shades(r.reflection[r.shows(object_id)]) for r in references])
-        known = np.zeros(len(outside), bool)
-        for shade in shades:
-            known |= np.abs(outside - shade).max(axis=-1) < CHROMA_STEP
-        if known.sum() >= ENOUGH_PIXELS:
-            seen.add(name)
-    return seen
-
-
-def _chroma(colour: np.ndarray) -> np.ndarray:
-    return colour / np.maximum(colour.sum(axis=-1, keepdims=True), 1e-6)
-
-
-def _shades(colour: np.ndarray) -> np.ndarray:
-    """The different r:g:b among the colours, to a step."""
-    return np.unique(np.round(_chroma(colour) / CHROMA_STEP), axis=0) * CHROMA_STEP
+def seen_directly(frame: Frame, objects: dict[str, int]) -> set[str]:
+    """The objects seen without a mirror."""
+    direct = frame.direct_object[~frame.mirror]
+    return {name for name, i in objects.items() if (direct == i).sum() >= ENOUGH_PIXELS}
 
 
 def displacement(ours: Frame, truth: Frame, object_id: int, samples: int = 500) -> tuple:

@@ -28,6 +28,8 @@ class Frame:
     """Number of reflectors met."""
     status: np.ndarray
     """MISSING, FOUND or ENVIRONMENT."""
+    direct_object: np.ndarray
+    """Id of the object seen directly, NO_OBJECT on the background."""
     reflector: np.ndarray
     """Id of the reflector seen, NO_OBJECT elsewhere."""
     normal: np.ndarray
@@ -68,6 +70,7 @@ def read_frame(path: Path) -> Frame:
         object=ids("shown.object"),
         order=ids("shown.order"),
         status=ids("shown.status"),
+        direct_object=ids("object.id"),
         reflector=ids("reflector.id"),
         normal=_stack(channels, "normal.", "XYZ"),
     )

@@ -92,6 +92,7 @@ def draw(case: str, width: int, height: int, frame: int) -> dict[str, np.ndarray
     for name, value in ids.items():
         off = 0 if name in ("shown.order", "shown.status") else NO_OBJECT
         layers[name] = np.where(mirror, value, off).astype(np.uint32)
+    layers["object.id"] = np.where(mirror, MIRROR, obj).astype(np.uint32)
     return layers
 
 

@@ -7,9 +7,13 @@
 mod buffer;
 mod command;
 mod device;
+mod dispatch;
+mod draw;
 mod frame;
 mod image;
 mod instance;
+#[cfg(test)]
+pub(crate) mod layout;
 mod pass;
 mod pipeline;
 mod profiler;
@@ -17,10 +21,11 @@ mod shader;
 
 pub use buffer::{Buffer, Slice};
 pub use device::{Device, DeviceInfo};
+pub use draw::{Draw, Load};
 pub use frame::{Dump, Frame, Recorded};
 pub use image::{Format, Image, Shape};
 pub use instance::{ValidationLog, list_devices};
-pub use pass::{Draw, Load, Pass};
+pub use pass::Pass;
 pub use pipeline::{Attachments, ComputePipeline, Depth, GraphicsPipeline, Stencil};
 pub use profiler::PassTime;
 pub use shader::{Binding, BindingKind, Defines, Shaders};

@@ -1,42 +1,13 @@
-//! A pass: a pipeline, what it binds by name, and how much of it to run.
+//! A pass: a pipeline and what it binds by name. How much of it runs is in `dispatch` and `draw`.
 
 use std::sync::Arc;
 
 use ash::vk;
 
+use super::draw::Load;
 use super::pipeline::{Owner, descriptor_type};
 use super::{BindingKind, Buffer, ComputePipeline, Frame, GraphicsPipeline, Image, Sampler, Slice};
 use crate::error::{Error, Result};
-
-/// What an attachment holds when the pass starts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Load {
-    Keep,
-    /// Floats; for depth the first.
-    Clear([f32; 4]),
-    /// Words; for stencil the first.
-    ClearWords([u32; 4]),
-}
-
-impl Load {
-    fn op(self) -> vk::AttachmentLoadOp {
-        if self == Load::Keep { vk::AttachmentLoadOp::LOAD } else { vk::AttachmentLoadOp::CLEAR }
-    }
-
-    fn colour(self) -> vk::ClearColorValue {
-        match self {
-            Load::Keep => vk::ClearColorValue::default(),
-            Load::Clear(float32) => vk::ClearColorValue { float32 },
-            Load::ClearWords(uint32) => vk::ClearColorValue { uint32 },
-        }
-    }
-
-    fn depth_stencil(depth: Load, stencil: Load) -> vk::ClearDepthStencilValue {
-        let depth = if let Load::Clear([d, ..]) = depth { d } else { 0.0 };
-        let stencil = if let Load::ClearWords([s, ..]) = stencil { s } else { 0 };
-        vk::ClearDepthStencilValue { depth, stencil }
-    }
-}
 
 enum Resource<'f> {
     Image { image: &'f Image, written: bool },
@@ -53,7 +24,7 @@ struct Bound<'f> {
 }
 
 /// The pipeline of a pass.
-enum Program<'f> {
+pub(super) enum Program<'f> {
     None,
     Compute(&'f ComputePipeline),
     Graphics(&'f GraphicsPipeline),
@@ -63,12 +34,12 @@ enum Program<'f> {
 /// errors met on the way come out there.
 #[must_use = "a pass records nothing until over, over_pixels, indirect, draw or clear is called"]
 pub struct Pass<'f> {
-    frame: &'f mut Frame,
+    pub(super) frame: &'f mut Frame,
     name: String,
-    program: Program<'f>,
+    pub(super) program: Program<'f>,
     bound: Vec<Bound<'f>>,
-    colours: Vec<(&'static str, &'f Image, Load)>,
-    depth_stencil: Option<(&'f Image, Load, Load)>,
+    pub(super) colours: Vec<(&'static str, &'f Image, Load)>,
+    pub(super) depth_stencil: Option<(&'f Image, Load, Load)>,
     error: Option<Error>,
 }
 
@@ -165,7 +136,7 @@ impl<'f> Pass<'f> {
     }
 
     /// An error that names the pass.
-    fn wrong(&self, what: impl std::fmt::Display) -> Error {
+    pub(super) fn wrong(&self, what: impl std::fmt::Display) -> Error {
         Error::Shader(format!("pass `{}`: {what}", self.name))
     }
 
@@ -271,7 +242,7 @@ impl<'f> Pass<'f> {
     }
 
     /// Record the pass between label and timestamps, then copy out what is to be dumped.
-    fn record(
+    pub(super) fn record(
         mut self,
         program: Option<(&Arc<Owner>, vk::PipelineBindPoint)>,
         work: impl FnOnce(&mut Self) -> Result<()>,
@@ -306,213 +277,5 @@ impl<'f> Pass<'f> {
             self.frame.dump(&self.name, name, image)?;
         }
         Ok(())
-    }
-
-    /// Run at least `count` invocations in one dimension; the shader checks the excess.
-    pub fn over(self, count: u32) -> Result<()> {
-        self.dispatch([count, 1])
-    }
-
-    /// Run at least one invocation a pixel; the shader checks the excess.
-    pub fn over_pixels(self, size: [u32; 2]) -> Result<()> {
-        self.dispatch(size)
-    }
-
-    fn dispatch(self, extent: [u32; 2]) -> Result<()> {
-        let pipeline = self.compute_pipeline()?;
-        let [x, y, _] = pipeline.workgroup;
-        let groups = [extent[0].div_ceil(x), extent[1].div_ceil(y)];
-        self.record(Some((&pipeline.owner, vk::PipelineBindPoint::COMPUTE)), |pass| {
-            let frame = &pass.frame;
-            // SAFETY: recording, with pipeline and descriptors bound by `record`.
-            unsafe { frame.device.raw.cmd_dispatch(frame.commands, groups[0], groups[1], 1) };
-            Ok(())
-        })
-    }
-
-    /// Run as many workgroups as three words at the start of `arguments` say.
-    pub fn indirect(self, arguments: &Buffer) -> Result<()> {
-        let pipeline = self.compute_pipeline()?;
-        self.frame.keep(arguments.owner.clone());
-        self.record(Some((&pipeline.owner, vk::PipelineBindPoint::COMPUTE)), |pass| {
-            let frame = &pass.frame;
-            // SAFETY: as in `dispatch`; the buffer is kept and holds at least 16 bytes.
-            unsafe { frame.device.raw.cmd_dispatch_indirect(frame.commands, arguments.raw, 0) };
-            Ok(())
-        })
-    }
-
-    fn compute_pipeline(&self) -> Result<&'f ComputePipeline> {
-        match self.program {
-            Program::Compute(pipeline) => Ok(pipeline),
-            _ => Err(self.wrong("no compute pipeline to dispatch")),
-        }
-    }
-
-    /// Fill images, each with one value; names are their dumps'.
-    pub fn clear(mut self, images: &[(&'static str, &'f Image, Load)]) -> Result<()> {
-        for &(name, image, _) in images {
-            self = self.store(name, image);
-        }
-        self.record(None, |pass| {
-            let frame = &pass.frame;
-            for (_, image, load) in images {
-                // SAFETY: recording; the image is kept, its format takes clears of this kind.
-                unsafe {
-                    frame.device.raw.cmd_clear_color_image(
-                        frame.commands,
-                        image.owner.raw,
-                        vk::ImageLayout::GENERAL,
-                        &load.colour(),
-                        &[image.range()],
-                    );
-                }
-            }
-            Ok(())
-        })
-    }
-
-    /// Fill buffers with one word.
-    pub fn fill(self, buffers: &[&Buffer], word: u32) -> Result<()> {
-        self.record(None, |pass| {
-            for buffer in buffers {
-                pass.frame.keep(buffer.owner.clone());
-                let (raw, commands) = (&pass.frame.device.raw, pass.frame.commands);
-                // SAFETY: recording; the buffer is kept.
-                unsafe { raw.cmd_fill_buffer(commands, buffer.raw, 0, vk::WHOLE_SIZE, word) };
-            }
-            Ok(())
-        })
-    }
-
-    /// Draw into the attachments.
-    pub fn draw(self, draws: impl FnOnce(&mut Draw<'_>)) -> Result<()> {
-        let mut draws = Some(draws);
-        self.draw_layers(1, |draw| {
-            if let Some(draws) = draws.take() {
-                draws(draw);
-            }
-        })
-    }
-
-    /// Draw into the first layers of the attachments, one after the other; a shader's
-    /// `var<immediate>` of one word is the layer.
-    ///
-    /// Multiview would do this in one go, but clipped triangles land in layer 0 with it on
-    /// lavapipe (Mesa 22.3).
-    pub fn draw_layers(self, layers: u32, mut draws: impl FnMut(&mut Draw<'_>)) -> Result<()> {
-        let Program::Graphics(pipeline) = self.program else {
-            return Err(self.wrong("no graphics pipeline to draw with"));
-        };
-        let first = self.colours.first().map(|(_, image, _)| image.size);
-        let Some(size) = first.or(self.depth_stencil.map(|(image, ..)| image.size)) else {
-            return Err(self.wrong("nothing to draw into"));
-        };
-        let owner = &pipeline.owner;
-        self.record(Some((owner, vk::PipelineBindPoint::GRAPHICS)), |pass| {
-            for layer in 0..layers {
-                pass.begin_rendering(size, layer);
-                if owner.layout.has_immediate {
-                    let (raw, commands) = (&pass.frame.device.raw, pass.frame.commands);
-                    let word = layer.to_ne_bytes();
-                    // SAFETY: recording; the layout has this range.
-                    unsafe {
-                        raw.cmd_push_constants(
-                            commands,
-                            owner.layout.raw,
-                            owner.layout.stages,
-                            0,
-                            &word,
-                        );
-                    }
-                }
-                draws(&mut Draw { frame: &mut *pass.frame });
-                let frame = &pass.frame;
-                // SAFETY: rendering was begun just above.
-                unsafe { frame.device.raw.cmd_end_rendering(frame.commands) };
-            }
-            Ok(())
-        })
-    }
-
-    fn begin_rendering(&self, size: [u32; 2], layer: u32) {
-        let attachment = |image: &Image, load: Load, value| {
-            vk::RenderingAttachmentInfo::default()
-                .image_view(image.attachment_view(layer))
-                .image_layout(vk::ImageLayout::GENERAL)
-                .load_op(load.op())
-                .store_op(vk::AttachmentStoreOp::STORE)
-                .clear_value(value)
-        };
-        let colours: Vec<_> = self
-            .colours
-            .iter()
-            .map(|&(_, i, load)| attachment(i, load, vk::ClearValue { color: load.colour() }))
-            .collect();
-        let depth_stencil = self.depth_stencil.map(|(image, depth, stencil)| {
-            let value = Load::depth_stencil(depth, stencil);
-            let value = vk::ClearValue { depth_stencil: value };
-            (attachment(image, depth, value), attachment(image, stencil, value))
-        });
-        let extent = vk::Extent2D { width: size[0], height: size[1] };
-        let area = vk::Rect2D { offset: vk::Offset2D::default(), extent };
-        let mut info = vk::RenderingInfo::default()
-            .render_area(area)
-            .layer_count(1)
-            .color_attachments(&colours);
-        if let Some((depth, stencil)) = &depth_stencil {
-            info = info.depth_attachment(depth).stencil_attachment(stencil);
-        }
-        let viewport = vk::Viewport {
-            x: 0.0,
-            y: 0.0,
-            width: size[0] as f32,
-            height: size[1] as f32,
-            min_depth: 0.0,
-            max_depth: 1.0,
-        };
-        let (raw, commands) = (&self.frame.device.raw, self.frame.commands);
-        // SAFETY: recording; attachments are kept by the frame and have the pipeline's formats,
-        // which validation checks; `info` and what it points to live until the call returns.
-        unsafe {
-            raw.cmd_begin_rendering(commands, &info);
-            raw.cmd_set_viewport(commands, 0, &[viewport]);
-            raw.cmd_set_scissor(commands, 0, &[area]);
-            raw.cmd_set_stencil_reference(commands, vk::StencilFaceFlags::FRONT_AND_BACK, 0);
-        }
-    }
-}
-
-/// Draws inside a graphics pass.
-pub struct Draw<'a> {
-    frame: &'a mut Frame,
-}
-
-impl Draw<'_> {
-    /// What the stencil test compares with, or marks.
-    pub fn stencil_reference(&mut self, reference: u32) {
-        let both = vk::StencilFaceFlags::FRONT_AND_BACK;
-        let raw = &self.frame.device.raw;
-        // SAFETY: recording inside a rendering scope.
-        unsafe { raw.cmd_set_stencil_reference(self.frame.commands, both, reference) };
-    }
-
-    /// Triangles of a buffer of 32-bit indices; shaders see `instance` as the instance index.
-    pub fn indexed(&mut self, indices: &Buffer, first: u32, count: u32, instance: u32) {
-        self.frame.keep(indices.owner.clone());
-        let (raw, commands) = (&self.frame.device.raw, self.frame.commands);
-        // SAFETY: recording inside a rendering scope; the caller's range lies in the kept buffer,
-        // which validation checks.
-        unsafe {
-            raw.cmd_bind_index_buffer(commands, indices.raw, 0, vk::IndexType::UINT32);
-            raw.cmd_draw_indexed(commands, count, 1, first, 0, instance);
-        }
-    }
-
-    /// Vertices the shader makes itself from the vertex index.
-    pub fn vertices(&mut self, count: u32) {
-        let (raw, commands) = (&self.frame.device.raw, self.frame.commands);
-        // SAFETY: recording inside a rendering scope.
-        unsafe { raw.cmd_draw(commands, count, 1, 0, 0) };
     }
 }

@@ -126,3 +126,14 @@ impl ReflectionMethod for EnvironmentMap {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Params;
+    use crate::gpu::layout::assert_layout;
+
+    #[test]
+    fn parameters_are_laid_out_as_their_wgsl_twin() {
+        assert_layout!("environment_map/reflect.wgsl", "Params", Params, centre, size);
+    }
+}

@@ -40,7 +40,9 @@ pub struct PlaneUniform {
     normal: [f32; 3],
     offset: f32,
     object: u32,
-    pad: [u32; 3],
+    pad_a: u32,
+    pad_b: u32,
+    pad_c: u32,
 }
 
 struct PlanarMirror {
@@ -114,7 +116,8 @@ impl ReflectionMethod for PlanarMirror {
             if view.camera.eye().dot(normal) < offset {
                 (normal, offset) = (-normal, -offset);
             }
-            let uniform = PlaneUniform { normal: normal.to_array(), offset, object, pad: [0; 3] };
+            let uniform =
+                PlaneUniform { normal: normal.to_array(), offset, object, ..Zeroable::zeroed() };
             let pass = frame.pass("planar-mirror/mirrored").graphics(&self.mirrored);
             let pass = record.attach(view.bind(scene.bind(pass)));
             let depth = Load::Clear([0.0; 4]);
@@ -126,5 +129,18 @@ impl ReflectionMethod for PlanarMirror {
                 })?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::PlaneUniform;
+    use crate::gpu::layout::assert_layout;
+
+    #[test]
+    #[rustfmt::skip]
+    fn the_plane_is_laid_out_as_its_wgsl_twin() {
+        assert_layout!("planar_mirror/mirrored.wgsl", "Plane", PlaneUniform,
+            normal, offset, object, pad_a, pad_b, pad_c);
     }
 }

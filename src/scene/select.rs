@@ -40,20 +40,22 @@ impl Scene {
 
 /// Whether `text` matches `pattern`: `*` stands for any characters, `?` for one.
 pub fn matches_pattern(pattern: &str, text: &str) -> bool {
-    let mut pattern_chars = pattern.chars();
-    match pattern_chars.next() {
-        None => text.is_empty(),
-        Some('*') => {
-            let rest = pattern_chars.as_str();
-            let tails = text.char_indices().map(|(start, _)| &text[start..]).chain([""]);
-            tails.into_iter().any(|tail| matches_pattern(rest, tail))
-        }
-        Some(expected) => {
-            let mut text_chars = text.chars();
-            text_chars.next().is_some_and(|found| expected == '?' || expected == found)
-                && matches_pattern(pattern_chars.as_str(), text_chars.as_str())
+    let text: Vec<char> = text.chars().collect();
+    // reachable[j]: the pattern so far matches the first j characters.
+    let mut reachable = vec![false; text.len() + 1];
+    reachable[0] = true;
+    for symbol in pattern.chars() {
+        if symbol == '*' {
+            let first = reachable.iter().position(|r| *r).unwrap_or(reachable.len());
+            reachable[first..].fill(true);
+        } else {
+            for j in (1..=text.len()).rev() {
+                reachable[j] = reachable[j - 1] && (symbol == '?' || symbol == text[j - 1]);
+            }
+            reachable[0] = false;
         }
     }
+    reachable[text.len()]
 }
 
 #[cfg(test)]

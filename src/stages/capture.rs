@@ -133,7 +133,13 @@ fn face_matrix(face: u32, centre: Vec3) -> Mat4 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::layout::assert_layout;
     use glam::Vec4Swizzles;
+
+    #[test]
+    fn the_cube_is_laid_out_as_its_wgsl_twin() {
+        assert_layout!("stages/capture.wgsl", "Cube", CubeUniform, clip_from_world, centre, pad);
+    }
 
     #[test]
     fn a_point_lands_on_the_texel_of_its_direction() {

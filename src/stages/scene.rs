@@ -24,7 +24,9 @@ pub struct Vertex {
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub struct ObjectEntry {
-    rows: [[f32; 4]; 3],
+    row_x: [f32; 4],
+    row_y: [f32; 4],
+    row_z: [f32; 4],
     material: u32,
     rank: u32,
     selected: u32,
@@ -65,13 +67,13 @@ pub struct LightUniform {
     towards_sun: [f32; 3],
     image: u32,
     sun: [f32; 3],
-    pad0: u32,
+    pad_a: u32,
     zenith: [f32; 3],
-    pad1: u32,
+    pad_b: u32,
     horizon: [f32; 3],
-    pad2: u32,
+    pad_c: u32,
     nadir: [f32; 3],
-    pad3: u32,
+    pad_d: u32,
 }
 
 /// A scene uploaded to a device.
@@ -148,8 +150,11 @@ impl GpuScene {
         let entries: Vec<_> = (0..self.scene.objects.len())
             .map(|index| {
                 let id = index as ObjectId;
+                let [row_x, row_y, row_z] = rows(&self.moment.poses[index]);
                 let entry = ObjectEntry {
-                    rows: rows(&self.moment.poses[index]),
+                    row_x,
+                    row_y,
+                    row_z,
                     material: self.scene.objects[index].material as u32,
                     rank,
                     selected: u32::from(selected.contains(&id)),
@@ -274,4 +279,25 @@ fn light_uniform(scene: &Scene) -> LightUniform {
         }
     }
     uniform
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::assert_layout;
+
+    #[test]
+    #[rustfmt::skip]
+    fn structs_are_laid_out_as_their_wgsl_twins() {
+        assert_layout!("stages/direct_view.wgsl", "Vertex", Vertex, position, u, normal, v);
+        assert_layout!("stages/direct_view.wgsl", "Object", ObjectEntry,
+            row_x, row_y, row_z, material, rank, selected, pad);
+        assert_layout!("stages/direct_view.wgsl", "Material", MaterialEntry,
+            first, pattern, second, line, tint, reflectance, size, image, pad);
+        assert_layout!("stages/direct_view.wgsl", "ImageInfo", ImageEntry,
+            offset, width, height, pad);
+        assert_layout!("stages/background.wgsl", "Light", LightUniform,
+            ambient, environment, towards_sun, image, sun, pad_a, zenith, pad_b, horizon, pad_c,
+            nadir, pad_d);
+    }
 }

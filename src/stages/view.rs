@@ -94,3 +94,16 @@ impl<'a> View<'a> {
         self.footprint.list_pixels(frame, scene, reflectors)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::assert_layout;
+
+    #[test]
+    #[rustfmt::skip]
+    fn the_camera_is_laid_out_as_its_wgsl_twin() {
+        assert_layout!("stages/direct_view.wgsl", "Camera", CameraUniform,
+            clip_from_world, eye, orthographic, forward, pad, right, half_width, up, half_height);
+    }
+}
