@@ -51,3 +51,43 @@ fn packed_radiance(chain: Chain) -> vec4<f32> {
 fn trace_of(rank: u32) -> u32 {
     return (rank + 1u) & 0xffu;
 }
+
+// One bounce at `bounce`, off the reflector of this rank, towards the environment in `direction`.
+fn environment_chain(
+    radiance: vec3<f32>,
+    direction: vec3<f32>,
+    bounce: vec3<f32>,
+    rank: u32,
+) -> Chain {
+    var chain: Chain;
+    chain.radiance = radiance;
+    chain.point = vec4(direction, 0.0);
+    // Infinitely far.
+    chain.last = vec4(bounce, bitcast<f32>(0x7f800000u));
+    chain.object = NO_OBJECT;
+    chain.trace = trace_of(rank);
+    chain.order = 1u;
+    chain.status = STATUS_ENVIRONMENT;
+    return chain;
+}
+
+// One bounce at `bounce`, off the reflector of this rank, to a point on a triangle of an object.
+fn found_chain(
+    radiance: vec3<f32>,
+    point: vec3<f32>,
+    bounce: vec3<f32>,
+    object: u32,
+    triangle: u32,
+    rank: u32,
+) -> Chain {
+    var chain: Chain;
+    chain.radiance = radiance;
+    chain.point = vec4(point, 1.0);
+    chain.last = vec4(bounce, distance(bounce, point));
+    chain.object = object;
+    chain.triangle = triangle;
+    chain.trace = trace_of(rank);
+    chain.order = 1u;
+    chain.status = STATUS_FOUND;
+    return chain;
+}

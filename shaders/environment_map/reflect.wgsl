@@ -5,7 +5,7 @@
 #import bindings::scene::objects
 #import bindings::view::{mirror_point, pixel_count}
 #import common::cube::cube_texel
-#import common::record::{Chain, STATUS_ENVIRONMENT, STATUS_FOUND, trace_of}
+#import common::record::{environment_chain, found_chain}
 
 struct Params {
     // Centre of the map, world.
@@ -30,25 +30,18 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 #else
     let direction = at.mirrored;
 #endif
-    var chain: Chain;
-    chain.radiance = textureSampleLevel(capture_radiance, linear_filter, direction, 0.0).rgb;
-    chain.status = STATUS_FOUND;
+    let radiance = textureSampleLevel(capture_radiance, linear_filter, direction, 0.0).rgb;
+    let rank = objects[at.reflector].rank;
+    var chain = environment_chain(radiance, direction, at.position, rank);
 #ifdef RECORD_FULL
     // The evidence is the nearest texel's own point, never a blend across an edge.
     let texel = cube_texel(direction);
     let place = min(vec2<u32>(texel.uv * f32(params.size)), vec2(params.size - 1u));
-    chain.point = textureLoad(capture_point, place, texel.face, 0);
-    let ids = textureLoad(capture_ids, place, texel.face, 0);
-    chain.object = ids.x;
-    chain.triangle = ids.y;
-    chain.trace = trace_of(objects[at.reflector].rank);
-    chain.order = 1u;
-    let infinity = bitcast<f32>(0x7f800000u);
-    if chain.point.w == 0.0 {
-        chain.status = STATUS_ENVIRONMENT;
-        chain.last = vec4(at.position, infinity);
-    } else {
-        chain.last = vec4(at.position, distance(at.position, chain.point.xyz));
+    let point = textureLoad(capture_point, place, texel.face, 0);
+    chain.point = point;
+    if point.w == 1.0 {
+        let ids = textureLoad(capture_ids, place, texel.face, 0);
+        chain = found_chain(radiance, point.xyz, at.position, ids.x, ids.y, rank);
     }
     count(0u, 1u);
 #endif

@@ -2,7 +2,7 @@
 #import bindings::record::write_record
 #import bindings::scene::{environment, objects}
 #import bindings::view::{mirror_point, pixel_count}
-#import common::record::{Chain, NO_OBJECT, STATUS_ENVIRONMENT, trace_of}
+#import common::record::environment_chain
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -10,14 +10,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let at = mirror_point(id.x);
-    let infinity = bitcast<f32>(0x7f800000u);
-    var chain: Chain;
-    chain.radiance = environment(at.mirrored);
-    chain.point = vec4(at.mirrored, 0.0);
-    chain.last = vec4(at.position, infinity);
-    chain.object = NO_OBJECT;
-    chain.trace = trace_of(objects[at.reflector].rank);
-    chain.order = 1u;
-    chain.status = STATUS_ENVIRONMENT;
-    write_record(at.pixel, chain);
+    let radiance = environment(at.mirrored);
+    let rank = objects[at.reflector].rank;
+    write_record(at.pixel, environment_chain(radiance, at.mirrored, at.position, rank));
 }

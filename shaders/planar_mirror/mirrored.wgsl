@@ -1,9 +1,10 @@
 enable primitive_index;
 // The scene mirrored in a plane and drawn through the stencil (Diefenbach & Badler 1997;
 // McReynolds & Blythe 1997): what lies behind the mirror's plane is clipped away.
-#import bindings::scene::{vertices, objects, materials, world_position, world_direction, shade}
-#import common::camera::{Camera, arriving, facing}
-#import common::record::{Chain, STATUS_FOUND, packed_ids, packed_radiance, trace_of}
+#import bindings::scene::objects
+#import bindings::surface::{Surface, surface_colour, surface_vertex}
+#import common::camera::{Camera, arriving}
+#import common::record::{found_chain, packed_ids, packed_radiance}
 
 @group(0) @binding(30) var<uniform> camera: Camera;
 
@@ -20,14 +21,6 @@ struct Plane {
 @group(0) @binding(0) var<uniform> plane: Plane;
 @group(0) @binding(31) var reflector_id: texture_2d<u32>;
 
-struct Varying {
-    @builtin(position) clip: vec4<f32>,
-    @location(0) position: vec3<f32>,
-    @location(1) normal: vec3<f32>,
-    @location(2) uv: vec2<f32>,
-    @location(3) @interpolate(flat) object: u32,
-}
-
 fn mirrored(p: vec3<f32>) -> vec3<f32> {
     return p - 2.0 * (dot(p, plane.normal) - plane.offset) * plane.normal;
 }
@@ -36,12 +29,10 @@ fn mirrored(p: vec3<f32>) -> vec3<f32> {
 fn vertex(
     @builtin(vertex_index) index: u32,
     @builtin(instance_index) object: u32,
-) -> Varying {
-    let v = vertices[index];
-    let o = objects[object];
-    let position = world_position(o, v.position);
-    let clip = camera.clip_from_world * vec4(mirrored(position), 1.0);
-    return Varying(clip, position, world_direction(o, v.normal), vec2(v.u, v.v), object);
+) -> Surface {
+    var out = surface_vertex(index, object);
+    out.clip = camera.clip_from_world * vec4(mirrored(out.position), 1.0);
+    return out;
 }
 
 struct Reflected {
@@ -54,7 +45,7 @@ struct Reflected {
 }
 
 @fragment
-fn fragment(in: Varying, @builtin(primitive_index) triangle: u32) -> Reflected {
+fn fragment(in: Surface, @builtin(primitive_index) triangle: u32) -> Reflected {
     let height = dot(in.position, plane.normal) - plane.offset;
     // Two reflectors may share a stencil value; the id image decides.
     let seen = textureLoad(reflector_id, vec2<u32>(in.clip.xy), 0).x;
@@ -65,16 +56,9 @@ fn fragment(in: Varying, @builtin(primitive_index) triangle: u32) -> Reflected {
     let virtual_point = mirrored(in.position);
     let incident = arriving(camera, virtual_point);
     let bounce = virtual_point - incident * (height / -dot(incident, plane.normal));
-    let normal = facing(in.normal, in.position - bounce);
-    var chain: Chain;
-    chain.radiance = shade(materials[objects[in.object].material], normal, in.uv);
-    chain.point = vec4(in.position, 1.0);
-    chain.last = vec4(bounce, distance(bounce, in.position));
-    chain.object = in.object;
-    chain.triangle = triangle;
-    chain.trace = trace_of(objects[plane.object].rank);
-    chain.order = 1u;
-    chain.status = STATUS_FOUND;
+    let colour = surface_colour(in, in.position - bounce);
+    let rank = objects[plane.object].rank;
+    let chain = found_chain(colour, in.position, bounce, in.object, triangle, rank);
     var out: Reflected;
     out.radiance = packed_radiance(chain);
 #ifdef RECORD_FULL
