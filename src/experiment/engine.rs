@@ -40,7 +40,6 @@ pub struct FrameTimes {
 pub enum Fallback {
     None,
     Environment,
-    Ray,
 }
 
 /// How an engine is set up.
@@ -92,7 +91,7 @@ impl Engine {
     /// Upload the scene, compile the pipelines.
     ///
     /// # Errors
-    /// [`Error::Usage`] where the case or the fallback does not fit the scene, [`Error::Device`]
+    /// [`Error::Usage`] where the case does not fit the scene, [`Error::Device`]
     /// where the scene is beyond the device's limits, [`Error::Shader`].
     pub fn new(
         device: &Arc<Device>,
@@ -108,13 +107,6 @@ impl Engine {
         let fallback = match options.fallback {
             Fallback::None => None,
             Fallback::Environment => Some(EnvironmentFallback::new(device, mode)?),
-            Fallback::Ray => {
-                return Err(Error::Usage(
-                    "--fallback ray needs the ray-traced method, which is not built yet; valid: \
-                     none, environment"
-                        .into(),
-                ));
-            }
         };
         let gpu_scene = GpuScene::new(device, &Arc::new(scene.clone()))?;
         let parts = parts(device, &gpu_scene, case, registry, options)?;

@@ -224,14 +224,13 @@ fn typed(kind: Option<Kind>, text: &str) -> Value {
 }
 
 impl Fallback {
-    pub const NAMES: [(&'static str, Fallback); 3] =
-        [("none", Fallback::None), ("environment", Fallback::Environment), ("ray", Fallback::Ray)];
+    pub const NAMES: [(&'static str, Fallback); 2] =
+        [("none", Fallback::None), ("environment", Fallback::Environment)];
 
     pub fn name(self) -> &'static str {
         match self {
             Fallback::None => "none",
             Fallback::Environment => "environment",
-            Fallback::Ray => "ray",
         }
     }
 }
