@@ -60,7 +60,7 @@ fn wrong_flags_end_in_2() {
     let flags = [
         ("--size", "12x", "1280x720"),
         ("--size", "8x8", "16 to 16384"),
-        ("--fallback", "hope", "none, environment, ray"),
+        ("--fallback", "hope", "none, environment"),
         ("--record", "all", "radiance, full"),
         ("--frames", "5..5", "A below B"),
         ("--repeat", "0", "1.."),

@@ -5,10 +5,10 @@ mod gpu_support;
 
 use std::collections::BTreeSet;
 
-use glam::{Vec2, Vec4Swizzles};
+use glam::{Vec2, Vec3, Vec4Swizzles};
 use gpu_support::{Session, frame, judged, tracer};
-use mirrorbench::geometry::cube;
-use mirrorbench::scene::{self, FrameRecord, Scene, Status};
+use mirrorbench::geometry::{Camera, Projection, cube};
+use mirrorbench::scene::{self, CameraPath, FrameRecord, Mirror, Pattern, Scene, Status};
 
 const SIZE: [u32; 2] = [128, 96];
 
@@ -80,6 +80,37 @@ fn a_flat_mirror_is_exact() {
     let displacement = accuracy.displacement_px.unwrap();
     assert!(displacement.p95 < 0.05, "{displacement:?}");
     assert!(accuracy.covered > 0.998, "{accuracy:?}");
+}
+
+#[test]
+fn a_flat_mirror_is_exact_under_parallel_rays() {
+    let (session, mut scene) = (Session::open(), scene::load("lecture").unwrap());
+    let camera = scene.camera.at(0.0);
+    let projection = Projection::Orthographic { height: 3.0 };
+    scene.camera = CameraPath::Keys(vec![(0.0, Camera { projection, ..camera })]);
+    let (_, accuracy, _) = judged(&session, &scene, "planar-mirror", [160, 80], 0);
+    assert!(accuracy.bad_share.half < 0.002 && accuracy.covered > 0.998, "{accuracy:?}");
+    assert!(accuracy.footprint_mismatch <= 0.002, "{accuracy:?}");
+}
+
+#[test]
+fn a_tinted_mirror_with_a_colour_of_its_own_looks_as_traced() {
+    let (session, mut scene) = (Session::open(), scene::load("lecture").unwrap());
+    let mirror = scene.objects[scene.reflectors()[0] as usize].material;
+    scene.materials[mirror].pattern = Pattern::Colour(Vec3::new(0.1, 0.3, 0.2));
+    scene.materials[mirror].mirror =
+        Some(Mirror { reflectance: 0.6, tint: Vec3::new(1.0, 0.8, 0.5) });
+    let size = [160, 80];
+    let tested = frame(&session, &scene, "planar-mirror", size, 0);
+    let truth = tracer(&scene, &scene.at(0)).frame(size);
+    let pixels = common(&truth, &tested);
+    let same = |i: &&usize| {
+        // Half floats, of sums up to about 1.
+        tested.colour[**i].abs_diff_eq(truth.colour[**i], 2e-3)
+    };
+    let share = pixels.iter().filter(same).count() as f64 / pixels.len() as f64;
+    // What is left lies on the edges of the floor's checks.
+    assert!(share > 0.99, "{share} of {} mirror pixels look as traced", pixels.len());
 }
 
 /// Numbers of the lecture's objects 1 to 4 among some pixels' objects.
