@@ -111,17 +111,10 @@ struct Court<'a> {
 impl<'a> Court<'a> {
     fn new(truth: &'a FrameRecord, tracer: &'a Tracer) -> Self {
         let size = truth.size;
-        let chains: Vec<Option<Chain>> = (0..truth.reflector.len())
-            .into_par_iter()
-            .map(|pixel| {
-                let centre = at(size, pixel).as_vec2() + 0.5;
-                let ray = tracer.moment().camera.ray(size, centre);
-                let hit = tracer.look(&ray).filter(|hit| tracer.mirror(hit).is_some())?;
-                Some(tracer.chain(hit, ray.direction))
-            })
-            .collect();
+        let chains = chains(tracer, size);
         let longest = chains.iter().flatten().map(Chain::order).max().unwrap_or(0);
-        let fields = (1..=longest).map(|order| Field::new(size, &chains, order)).collect();
+        let fields =
+            (1..=longest).into_par_iter().map(|order| Field::new(size, &chains, order)).collect();
         Court { tracer, truth, chains, fields }
     }
 
@@ -201,6 +194,18 @@ impl<'a> Court<'a> {
         };
         tracer.through(&chain.bounces, end)
     }
+}
+
+/// Every reflector pixel's chain, as the truth traces it.
+pub(super) fn chains(tracer: &Tracer, size: [u32; 2]) -> Vec<Option<Chain>> {
+    (0..(size[0] * size[1]) as usize)
+        .into_par_iter()
+        .map(|pixel| {
+            let ray = tracer.moment().camera.ray(size, at(size, pixel).as_vec2() + 0.5);
+            let hit = tracer.look(&ray).filter(|hit| tracer.mirror(hit).is_some())?;
+            Some(tracer.chain(hit, ray.direction))
+        })
+        .collect()
 }
 
 fn at(size: [u32; 2], pixel: usize) -> UVec2 {

@@ -8,5 +8,6 @@ mod field;
 mod judge;
 mod root;
 pub mod statistics;
+mod tree;
 
 pub use accuracy::{Accuracy, BadShare, Class, Flip, Maps, Quantiles, accuracy};
