@@ -9,6 +9,11 @@ use super::field::{Field, Target, key};
 use crate::scene::{FrameRecord, Ids, Status, shading};
 use crate::truth::{Chain, Tracer};
 
+/// An answer seen within this of the mirrored direction is the pixel's own: single precision gives
+/// no better. Where parallel rays meet a flat mirror every pixel shows the same point of the sky, and
+/// a search for the one it belongs to would find none.
+const ROUNDING_DEG: f32 = 1e-4;
+
 /// Relative difference of distances over which a depth is wrong.
 const DEPTH_TOLERANCE: f32 = 0.05;
 
@@ -135,9 +140,15 @@ impl<'a> Court<'a> {
         let both_found = found(&expected) && found(&answer);
         let missing = answer.status == Status::Missing || found(&expected) && !found(&answer);
         let spurious = !found(&expected) && found(&answer);
-        let displacement_px = (!missing && !spurious)
-            .then(|| self.displacement(pixel, chain, Target::new(answer.point), queue))
-            .flatten();
+        let target = Target::new(answer.point);
+        let angle_deg = angle_deg(chain, target);
+        let displacement_px = if missing || spurious {
+            None
+        } else if angle_deg <= ROUNDING_DEG {
+            Some(0.0)
+        } else {
+            self.displacement(pixel, chain, target, queue)
+        };
         Judged {
             missing,
             spurious,
@@ -145,7 +156,7 @@ impl<'a> Court<'a> {
             wrong_depth: both_found && wrong_depth(chain, expected.point.xyz(), answer.point.xyz()),
             unreachable: !missing && !spurious && displacement_px.is_none(),
             displacement_px,
-            angle_deg: angle_deg(chain, Target::new(answer.point)),
+            angle_deg,
             shaded,
         }
     }
