@@ -233,3 +233,25 @@ fn an_interrupted_run_leaves_earlier_results() {
     command().args(bench).args(["--frames", "0..1", "--repeat", "1"]).assert().success();
     assert!(rows(folder.path()).len() > before.len());
 }
+
+#[test]
+fn every_command_of_the_readme_runs() {
+    let readme = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
+    let commands: Vec<&str> = readme
+        .lines()
+        .filter_map(|line| line.strip_prefix("| `mirrorbench ")?.split('`').next())
+        .collect();
+    assert!(commands.len() >= 9, "{commands:?}");
+    // The commands write below the folder they run in; later ones read what earlier ones left.
+    let folder = TempDir::new().unwrap();
+    let sweep = "scenes = [\"sky\"]\ncases = [\"none\"]\nsizes = [\"64x36\"]\nframes = \"0..1\"\n";
+    fs::write(folder.path().join("sweep.toml"), sweep).unwrap();
+    let frame = "out/columns/environment-map/frame-0000.exr";
+    for text in commands {
+        let text = text.replace(" A B ", &format!(" {frame} {frame} "));
+        let words = text.split_whitespace();
+        let done = command().current_dir(folder.path()).args(words).output().unwrap();
+        let said = String::from_utf8_lossy(&done.stderr);
+        assert!(done.status.success(), "mirrorbench {text}: {said}");
+    }
+}
