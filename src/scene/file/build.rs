@@ -163,11 +163,11 @@ impl Builder {
         defined: &BTreeMap<String, Spanned<MaterialFile>>,
     ) -> Result<()> {
         let group = self.object_name(&file.name)?;
-        if let (ShapeFile::Obj(obj), Some(own)) = (file.shape.get_ref(), &file.material) {
-            if !obj.materials.is_empty() {
-                let message = "both `material` and `materials`; valid: one of the two";
-                return Err(self.source.error(&own.span(), message));
-            }
+        if let (ShapeFile::Obj(obj), Some(own)) = (file.shape.get_ref(), &file.material)
+            && !obj.materials.is_empty()
+        {
+            let message = "both `material` and `materials`; valid: one of the two";
+            return Err(self.source.error(&own.span(), message));
         }
         let motion = self.motion(file)?;
         for part in self.make(file)? {
