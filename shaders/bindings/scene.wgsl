@@ -125,18 +125,18 @@ fn bilinear(image: ImageInfo, uv: vec2<f32>, clamp_v: bool) -> vec3<f32> {
 
 fn albedo(material: Material, uv: vec2<f32>) -> vec3<f32> {
     switch material.pattern {
-        case 1u: {
+        case PATTERN_CHECKER: {
             let square = floor(uv / material.size);
             let odd = (i32(square.x) + i32(square.y)) & 1;
             return select(material.first, material.second, odd == 1);
         }
-        case 2u: {
+        case PATTERN_GRID: {
             let nearest = floor(uv / material.size + 0.5);
             let away = abs(uv - nearest * material.size);
             let on_line = min(away.x, away.y) < 0.5 * material.line;
             return select(material.first, material.second, on_line);
         }
-        case 3u: {
+        case PATTERN_IMAGE: {
             let at = uv / material.size;
             return bilinear(images[material.image], vec2(at.x, 1.0 - at.y), false);
         }
@@ -155,13 +155,13 @@ fn shade(material: Material, normal: vec3<f32>, uv: vec2<f32>) -> vec3<f32> {
 // Radiance from infinitely far away; `d` is a unit vector.
 fn environment(d: vec3<f32>) -> vec3<f32> {
     switch light.environment {
-        case 1u: {
+        case ENVIRONMENT_GRADIENT: {
             if d.y >= 0.0 {
                 return mix(light.horizon, light.zenith, d.y);
             }
             return mix(light.horizon, light.nadir, -d.y);
         }
-        case 2u: {
+        case ENVIRONMENT_LATLONG: {
             let u = 0.5 + angle(d.x, -d.z) / (2.0 * PI);
             let v = angle(length(d.xz), d.y) / PI;
             return bilinear(images[light.image], vec2(u, v), true);

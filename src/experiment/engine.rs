@@ -52,7 +52,6 @@ pub struct RunOptions {
     pub shader_dir: Option<PathBuf>,
     /// Write the stored images of passes that match the pattern into the folder.
     pub dump: Option<(String, PathBuf)>,
-    pub seed: u64,
 }
 
 /// A method and the reflectors it serves.
@@ -161,11 +160,6 @@ impl Engine {
             .collect::<Result<Vec<_>>>()?;
         let recorded = self.frame.submit()?;
         Ok(recordings.iter().map(|recording| self.times(&recorded, recording)).collect())
-    }
-
-    /// Pixels of a view.
-    pub fn pixels(&self) -> u64 {
-        u64::from(self.options.size[0]) * u64::from(self.options.size[1])
     }
 
     /// Record everything of one frame.

@@ -72,9 +72,9 @@ impl<'m> Lab<'m> {
         size: [u32; 2],
         record: RecordMode,
     ) -> Result<Engine> {
-        let Settings { fallback, seed, ref shader_dir, ref dump, .. } = self.settings;
+        let Settings { fallback, ref shader_dir, ref dump, .. } = self.settings;
         let (shader_dir, dump) = (shader_dir.clone(), dump.clone());
-        let options = RunOptions { size, record, fallback, shader_dir, dump, seed };
+        let options = RunOptions { size, record, fallback, shader_dir, dump };
         Engine::new(self.device()?, scene, case, self.methods, &options)
     }
 

@@ -87,16 +87,6 @@ impl Camera {
         let extent = Vec2::new(size[0] as f32, size[1] as f32);
         Some((0.5 * ndc + Vec2::splat(0.5)) * extent)
     }
-
-    /// Length in metres that one pixel covers at `distance` from the eye.
-    pub fn pixel_size(&self, size: [u32; 2], distance: f32) -> f32 {
-        match self.projection {
-            Projection::Perspective { fov_y } => {
-                2.0 * distance * (0.5 * fov_y).tan() / size[1] as f32
-            }
-            Projection::Orthographic { height } => height / size[1] as f32,
-        }
-    }
 }
 
 #[cfg(test)]

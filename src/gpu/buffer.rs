@@ -128,14 +128,6 @@ impl Buffer {
         Ok(Buffer { raw, owner, name: name.to_owned(), bytes })
     }
 
-    pub fn bytes(&self) -> u64 {
-        self.bytes
-    }
-
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
     pub(super) fn whole(&self) -> Slice {
         Slice { buffer: self.raw, offset: 0, bytes: self.bytes }
     }

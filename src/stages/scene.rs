@@ -209,6 +209,7 @@ fn rows(pose: &Affine3A) -> [[f32; 4]; 3] {
     [[x.x, y.x, z.x, t.x], [x.y, y.y, z.y, t.y], [x.z, y.z, z.z, t.z]]
 }
 
+/// `pattern` is one of the shader's `PATTERN_` numbers.
 fn material_entry(material: &Material) -> MaterialEntry {
     let mut entry = MaterialEntry { size: [1.0; 2], ..Default::default() };
     match material.pattern {
@@ -254,6 +255,7 @@ fn image_entries(scene: &Scene) -> (Vec<ImageEntry>, Vec<[u32; 2]>) {
     (entries, texels)
 }
 
+/// `environment` is one of the shader's `ENVIRONMENT_` numbers.
 fn light_uniform(scene: &Scene) -> LightUniform {
     let light = &scene.lighting;
     let mut uniform = LightUniform {

@@ -66,7 +66,6 @@ pub fn options(size: [u32; 2]) -> RunOptions {
         fallback: Fallback::None,
         shader_dir: None,
         dump: None,
-        seed: 0,
     }
 }
 
