@@ -5,7 +5,7 @@ mod truth_support;
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use mirrorbench::geometry::alhazen::reflected_point;
 use mirrorbench::measure::{Accuracy, BadShare, Class, Maps, accuracy};
-use mirrorbench::scene::{FrameRecord, Ids, NO_OBJECT, Scene, Status};
+use mirrorbench::scene::{FrameRecord, Ids, Lobe, NO_OBJECT, Scene, Status};
 use mirrorbench::truth::{Spheres, Tracer};
 use truth_support::{BALL, FLAT, TWO_BALLS, at, eye_ray, scene, tracer};
 
@@ -388,7 +388,7 @@ fn directions_are_displaced_too() {
     let chain_direction = |pixel: usize| {
         let ray = eye_ray(&tracer, &truth, pixel + 2);
         let hit = tracer.look(&ray).filter(|hit| hit.object == truth.reflector[pixel])?;
-        Some(tracer.chain(hit, ray.direction).bounces[0].mirrored)
+        Some(tracer.chain(hit, ray.direction, Lobe::Reflected)?.bounces[0].outgoing)
     };
     let mut moved = sky;
     moved.retain(|&pixel| match chain_direction(pixel) {

@@ -5,7 +5,7 @@ mod truth_support;
 use glam::{Vec3, Vec4Swizzles};
 use mirrorbench::geometry::alhazen::reflected_point;
 use mirrorbench::geometry::optics::reflect;
-use mirrorbench::scene::{FrameRecord, NO_OBJECT, Status, shading};
+use mirrorbench::scene::{FrameRecord, Lobe, NO_OBJECT, Status, shading};
 use mirrorbench::truth::{Spheres, Tracer, TruthOptions};
 use truth_support::{BALL, FLAT, TWO_BALLS, eye_ray, off_ray, scene, tracer};
 
@@ -41,7 +41,7 @@ fn a_flat_mirror_shows_the_mirrored_ceiling() {
         assert_eq!((frame.reflector[pixel], frame.record.ids[pixel].object), (mirror, ceiling));
         assert_eq!((frame.normal[pixel], frame.record.ids[pixel].order()), (Vec3::Y, 1));
         // The ceiling is seen from below: its side away from its own normal.
-        let light = shading::shade(&scene, ceiling, Vec3::NEG_Y, tracer_uv(expected));
+        let light = shading::shade(&scene, ceiling, Vec3::NEG_Y, tracer_uv(expected), true);
         assert!(frame.record.radiance[pixel].abs_diff_eq(light, 1e-6) || near_an_edge(expected));
         assert!(frame.colour[pixel].abs_diff_eq(MIRROR * frame.record.radiance[pixel], 1e-6));
         pixels += 1;
@@ -182,11 +182,11 @@ fn later_mirrors_dim_the_light_and_the_first_does_not() {
     for pixel in frame.reflector_pixels() {
         let chain = {
             let ray = eye_ray(&tracer, &frame, pixel);
-            tracer.chain(tracer.look(&ray).unwrap(), ray.direction)
+            tracer.chain(tracer.look(&ray).unwrap(), ray.direction, Lobe::Reflected).unwrap()
         };
         let end = match &chain.shown {
             Some(hit) => tracer.diffuse(hit),
-            None => shading::environment(&scene, chain.last().mirrored),
+            None => shading::environment(&scene, chain.last().outgoing),
         };
         let dimmed = (1..chain.order()).fold(end, |light, _| MIRROR * light);
         assert!(frame.record.radiance[pixel].abs_diff_eq(dimmed, 1e-6));
@@ -204,7 +204,8 @@ fn a_weak_mirror_ends_the_chain_but_not_the_light() {
     let mut pixels = 0;
     for pixel in found(&frame).filter(|&pixel| frame.record.ids[pixel].object == ghost) {
         let ray = eye_ray(&tracer, &frame, pixel);
-        let chain = tracer.chain(tracer.look(&ray).unwrap(), ray.direction);
+        let chain =
+            tracer.chain(tracer.look(&ray).unwrap(), ray.direction, Lobe::Reflected).unwrap();
         if chain.order() == 1 && frame.reflector[pixel] != ghost {
             let itself = tracer.diffuse(&chain.shown.unwrap());
             assert!(frame.record.radiance[pixel].cmpgt(itself + 0.01).all());

@@ -115,7 +115,8 @@ fn patterned() -> Scene {
         Pattern::Grid { ground: a, lines: b, size: Vec2::new(0.5, 0.3), line: 0.04 },
         Pattern::Image { image: 0, size: Vec2::new(1.5, 0.8) },
     ];
-    let named = patterns.map(|pattern| Material { name: "m".into(), pattern, mirror: None });
+    let named =
+        patterns.map(|pattern| Material { name: "m".into(), pattern, mirror: None, glass: None });
     let first = scene.materials.len();
     scene.materials.extend(named);
     // The twin shades objects; one a material.
@@ -146,7 +147,7 @@ fn shading_of_every_pattern() {
     let mut edges = 0;
     for (i, (input, out)) in inputs.chunks(2).zip(outputs).enumerate() {
         let object = (objects.start + i % objects.len()) as u32;
-        let expected = shading::shade(&scene, object, input[0].xyz(), input[1].xy());
+        let expected = shading::shade(&scene, object, input[0].xyz(), input[1].xy(), true);
         edges += u32::from(!out.xyz().abs_diff_eq(expected, 1e-5));
     }
     // A division that rounds differently moves a pattern's edge past a point now and then.

@@ -21,7 +21,8 @@ struct Object {
     rank: u32,
     // 1 where the current pass is meant for this reflector.
     selected: u32,
-    pad: u32,
+    // Of its mesh, in `indices`.
+    first_index: u32,
 }
 
 const PATTERN_COLOUR: u32 = 0u;
@@ -37,10 +38,12 @@ struct Material {
     second: vec3<f32>,
     line: f32,
     tint: vec3<f32>,
+    // Below zero where there is no mirror.
     reflectance: f32,
     size: vec2<f32>,
     image: u32,
-    pad: u32,
+    // Refractive index of the inside of glass; 0 elsewhere.
+    index: f32,
 }
 
 struct ImageInfo {
@@ -78,6 +81,8 @@ struct Light {
 // Two words a texel: halves r, g and b, one unused.
 @group(0) @binding(14) var<storage, read> texels: array<vec2<u32>>;
 @group(0) @binding(15) var<uniform> light: Light;
+// Three a triangle, into `vertices`.
+@group(0) @binding(16) var<storage, read> indices: array<u32>;
 
 fn world_position(object: Object, p: vec3<f32>) -> vec3<f32> {
     let q = vec4(p, 1.0);

@@ -1,6 +1,8 @@
 // One view: its camera, its reflectors' footprint, and the list of pixels to fill.
 #define_import_path bindings::view
 
+#import bindings::departure::depart
+#import bindings::scene::{materials, objects}
 #import common::camera::{Camera, arriving}
 
 @group(0) @binding(30) var<uniform> camera: Camera;
@@ -16,18 +18,28 @@ struct PixelList {
 }
 @group(0) @binding(34) var<storage, read> pixels: PixelList;
 
+// Which lobe's record is filled: `LOBE_REFLECTED` or `LOBE_REFRACTED`.
+@group(0) @binding(35) var<uniform> lobe: u32;
+
 // What a method needs to know of one reflector pixel.
 struct MirrorPoint {
     pixel: vec2<u32>,
     reflector: u32,
+    // Of the reflector's mesh.
+    triangle: u32,
     // R of the papers.
     position: vec3<f32>,
     // N, unit, on the eye's side.
     normal: vec3<f32>,
+    // The eye sees the outside.
+    front: bool,
     // Unit direction of the eye ray, towards R.
     incident: vec3<f32>,
-    // B, unit: the mirrored direction.
-    mirrored: vec3<f32>,
+    // False where light does not leave by this lobe; then there is nothing to fill.
+    departs: bool,
+    // Unit: B, the mirrored direction; T for the refracted lobe.
+    outgoing: vec3<f32>,
+    lobe: u32,
 }
 
 fn pixel_count() -> u32 {
@@ -37,9 +49,20 @@ fn pixel_count() -> u32 {
 fn mirror_point(index: u32) -> MirrorPoint {
     let packed = pixels.packed[index];
     let pixel = vec2(packed & 0xffffu, packed >> 16u);
-    let position = textureLoad(reflector_position, pixel, 0).xyz;
-    let normal = textureLoad(reflector_normal, pixel, 0).xyz;
-    let incident = arriving(camera, position);
-    let reflector = textureLoad(reflector_id, pixel, 0).x;
-    return MirrorPoint(pixel, reflector, position, normal, incident, reflect(incident, normal));
+    let position = textureLoad(reflector_position, pixel, 0);
+    let normal = textureLoad(reflector_normal, pixel, 0);
+    var at: MirrorPoint;
+    at.pixel = pixel;
+    at.reflector = textureLoad(reflector_id, pixel, 0).x;
+    at.triangle = u32(position.w);
+    at.position = position.xyz;
+    at.normal = normal.xyz;
+    at.front = normal.w == 1.0;
+    at.incident = arriving(camera, at.position);
+    at.lobe = lobe;
+    let material = materials[objects[at.reflector].material];
+    let way = depart(material, lobe, at.incident, at.normal, at.front);
+    at.departs = way.exists;
+    at.outgoing = way.direction;
+    return at;
 }

@@ -9,6 +9,7 @@ const STATUS_ENVIRONMENT: u32 = 2u;
 
 const SOURCE_METHOD: u32 = 0u;
 const SOURCE_FALLBACK_ENVIRONMENT: u32 = 1u;
+const SOURCE_FALLBACK_RAY: u32 = 2u;
 
 // What the fourth channel of the radiance image holds.
 const ANSWER_MISSING: f32 = 0.0;
@@ -27,13 +28,15 @@ struct Chain {
     triangle: u32,
     trace: u32,
     order: u32,
+    // How it leaves the reflector: 0 mirrored, 1 refracted.
+    lobe: u32,
     status: u32,
     source: u32,
     flag: bool,
 }
 
 fn packed_bits(chain: Chain) -> u32 {
-    return chain.order | (chain.status << 12u) | (chain.source << 16u)
+    return chain.order | (chain.lobe << 8u) | (chain.status << 12u) | (chain.source << 16u)
         | (select(0u, 1u, chain.flag) << 20u);
 }
 
@@ -50,6 +53,17 @@ fn packed_radiance(chain: Chain) -> vec4<f32> {
 // A chain of one bounce off the reflector of this rank.
 fn trace_of(rank: u32) -> u32 {
     return (rank + 1u) & 0xffu;
+}
+
+// How many bounces a trace can tell apart.
+const TRACE_BOUNCES: u32 = 4u;
+
+// The trace of a chain of that order with one more reflector.
+fn extended_trace(trace: u32, order: u32, rank: u32) -> u32 {
+    if order >= TRACE_BOUNCES {
+        return trace;
+    }
+    return trace | (((rank + 1u) & 0xffu) << (8u * order));
 }
 
 // One bounce at `bounce`, off the reflector of this rank, towards the environment in `direction`.

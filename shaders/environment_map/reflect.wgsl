@@ -1,5 +1,6 @@
 // Environment mapping: the mirrored direction alone picks the texel, as if the scene were
-// infinitely far away (Blinn & Newell 1976; six cube faces after Greene 1986).
+// infinitely far away (Blinn & Newell 1976; six cube faces after Greene 1986). Glass is looked
+// through the same way, in the direction refracted at its first surface.
 // Patow 1995, section 1, figure 2, picks it by the reflector point W instead: `INDEX_SURFACE`.
 #import bindings::record::{write_record, count}
 #import bindings::scene::objects
@@ -25,10 +26,13 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let at = mirror_point(id.x);
+    if !at.departs {
+        return;
+    }
 #ifdef INDEX_SURFACE
     let direction = at.position - params.centre;
 #else
-    let direction = at.mirrored;
+    let direction = at.outgoing;
 #endif
     let radiance = textureSampleLevel(capture_radiance, linear_filter, direction, 0.0).rgb;
     let rank = objects[at.reflector].rank;
@@ -45,5 +49,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     count(0u, 1u);
 #endif
+    chain.lobe = at.lobe;
     write_record(at.pixel, chain);
 }

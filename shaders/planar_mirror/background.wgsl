@@ -10,7 +10,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let at = mirror_point(id.x);
-    let radiance = environment(at.mirrored);
+    let radiance = environment(at.outgoing);
     let rank = objects[at.reflector].rank;
-    write_record(at.pixel, environment_chain(radiance, at.mirrored, at.position, rank));
+    write_record(at.pixel, environment_chain(radiance, at.outgoing, at.position, rank));
 }

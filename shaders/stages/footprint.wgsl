@@ -1,3 +1,4 @@
+enable primitive_index;
 // The reflectors' footprint: which mirror each pixel shows, where, and its normal there.
 #import bindings::surface::{Surface, surface_vertex}
 #import common::camera::{Camera, arriving, facing}
@@ -16,12 +17,19 @@ fn vertex(
 
 struct Mirror {
     @location(0) object: u32,
+    // The fourth is the triangle, exact below 2^24.
     @location(1) position: vec4<f32>,
+    // The fourth is 1 where the outside is seen.
     @location(2) normal: vec4<f32>,
 }
 
 @fragment
-fn fragment(in: Surface) -> Mirror {
+fn fragment(
+    in: Surface,
+    @builtin(primitive_index) triangle: u32,
+    @builtin(front_facing) front: bool,
+) -> Mirror {
     let normal = facing(in.normal, arriving(camera, in.position));
-    return Mirror(in.object, vec4(in.position, 1.0), vec4(normal, 0.0));
+    let side = select(0.0, 1.0, front);
+    return Mirror(in.object, vec4(in.position, f32(triangle)), vec4(normal, side));
 }

@@ -23,7 +23,7 @@ pub struct Common {
     #[arg(long, default_value = "1280x720", value_name = "WxH")]
     pub size: Size,
     /// What fills pixels a method left missing or flagged
-    #[arg(long, default_value = "none", value_name = "none|environment", value_parser = fallback)]
+    #[arg(long, default_value = "none", value_name = "none|environment|ray", value_parser = fallback)]
     pub fallback: Fallback,
     /// What timed frames write; accuracy always needs full
     #[arg(long, default_value = "radiance", value_name = "radiance|full", value_parser = record)]
@@ -213,7 +213,7 @@ mod tests {
             assert!(share(bad).is_err(), "{bad}");
         }
         assert_eq!(fallback("environment"), Ok(Fallback::Environment));
-        assert!(fallback("ray").is_err());
+        assert_eq!(fallback("rays"), Err("valid: none, environment, ray".into()));
         assert_eq!(record("ful"), Err("valid: radiance, full".into()));
     }
 }

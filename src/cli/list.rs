@@ -93,6 +93,7 @@ fn description(info: &MethodInfo) -> String {
         ("passes", or_none(info.passes)),
         ("counters", or_none(info.counters)),
         ("flags doubts", if info.flags { "yes" } else { "no" }.to_owned()),
+        ("refracts", if info.refracts { "yes" } else { "no" }.to_owned()),
         ("prepares again", or_none(&changes(info))),
     ];
     let facts = facts.map(|(name, value)| vec![format!("  {name}"), value]);
@@ -134,6 +135,7 @@ fn card(info: &MethodInfo) -> Value {
         "method": info.id, "title": info.title, "paper": info.paper,
         "family": family(info.family), "variants": info.variants, "limits": info.limits,
         "passes": info.passes, "counters": info.counters, "flags": info.flags,
+        "refracts": info.refracts,
         "depends": {
             "objects": info.depends.objects, "reflectors": info.depends.reflectors,
             "shading": info.depends.shading,

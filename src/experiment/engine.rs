@@ -11,9 +11,9 @@ use super::dump_file;
 use crate::error::{Error, Result};
 use crate::gpu::{Device, Frame, Recorded};
 use crate::methods::{Case, Changes, MethodInfo, ReflectionMethod, Setup, Want};
-use crate::scene::{FrameRecord, Moment, ObjectId, Scene, matches_pattern};
+use crate::scene::{FrameRecord, Lobe, Moment, ObjectId, Scene, matches_pattern};
 use crate::stages::{
-    CameraUniform, Composite, DirectView, EnvironmentFallback, Footprint, GpuScene,
+    CameraUniform, Composite, DirectView, FallbackStage, Filling, Footprint, GpuScene,
     ReflectionRecord, View,
 };
 
@@ -40,6 +40,17 @@ pub struct FrameTimes {
 pub enum Fallback {
     None,
     Environment,
+    Ray,
+}
+
+impl Fallback {
+    fn filling(self) -> Option<Filling> {
+        match self {
+            Fallback::None => None,
+            Fallback::Environment => Some(Filling::Environment),
+            Fallback::Ray => Some(Filling::Ray),
+        }
+    }
 }
 
 /// How an engine is set up.
@@ -59,6 +70,8 @@ struct Part {
     info: &'static MethodInfo,
     method: Box<dyn ReflectionMethod>,
     reflectors: Vec<ObjectId>,
+    /// Those of them that are of glass.
+    glass: Vec<ObjectId>,
     /// The moment it was last prepared for.
     prepared: Option<Moment>,
 }
@@ -71,7 +84,11 @@ pub struct Engine {
     direct: DirectView,
     footprint: Footprint,
     record: ReflectionRecord,
-    fallback: Option<EnvironmentFallback>,
+    /// What glass lets through, where there is any.
+    refracted: Option<ReflectionRecord>,
+    fallback: Option<FallbackStage>,
+    /// The moment the fallback was last prepared for.
+    fallback_prepared: Option<Moment>,
     composite: Composite,
     parts: Vec<Part>,
     options: RunOptions,
@@ -103,21 +120,23 @@ impl Engine {
             device.read_shaders(folder)?;
         }
         let (size, mode) = (options.size, options.record);
-        let fallback = match options.fallback {
-            Fallback::None => None,
-            Fallback::Environment => Some(EnvironmentFallback::new(device, mode)?),
-        };
         let gpu_scene = GpuScene::new(device, &Arc::new(scene.clone()))?;
+        let fallback = options.fallback.filling();
+        let fallback =
+            fallback.map(|filling| FallbackStage::new(device, &gpu_scene, filling, mode));
+        let refracted = scene.refracts().then(|| ReflectionRecord::new(device, size, mode));
         let parts = parts(device, &gpu_scene, case, registry, options)?;
         Ok(Engine {
             frame: Frame::new(device)?,
             direct: DirectView::new(device, size)?,
             footprint: Footprint::new(device, size)?,
             record: ReflectionRecord::new(device, size, mode)?,
-            composite: Composite::new(device, size)?,
+            refracted: refracted.transpose()?,
+            composite: Composite::new(device, &gpu_scene, size)?,
             eyes: eyes(scene),
             prepare_bytes: 0,
-            fallback,
+            fallback: fallback.transpose()?,
+            fallback_prepared: None,
             parts,
             options: options.clone(),
             scene: gpu_scene,
@@ -141,12 +160,24 @@ impl Engine {
             }
         }
         let mut times = self.times(&recorded, &recording);
-        let counts = self.record.counters()?;
-        for part in &self.parts {
-            let named = part.info.counters.iter().zip(&counts);
-            times.counters.extend(named.map(|(name, n)| ((*name).to_owned(), u64::from(*n))));
-        }
+        times.counters = self.counters()?;
         Ok((self.read()?, times))
+    }
+
+    /// The work of the last frame, over all lobes, by the names of its parts and the fallback.
+    fn counters(&self) -> Result<Vec<(String, u64)>> {
+        let mut counts = self.record.counters()?;
+        if let Some(refracted) = &self.refracted {
+            for (count, more) in counts.iter_mut().zip(refracted.counters()?) {
+                *count += more;
+            }
+        }
+        let of_parts = self.parts.iter().flat_map(|part| part.info.counters.iter().zip(0..));
+        let of_fallback = FallbackStage::COUNTERS.iter().zip(FallbackStage::FIRST_COUNTER..);
+        let of_fallback = of_fallback.filter(|_| self.fallback.is_some());
+        let named = of_parts.chain(of_fallback);
+        let count = |place: usize| counts.get(place).map(|&count| u64::from(count));
+        Ok(named.filter_map(|(name, place)| Some(((*name).to_owned(), count(place)?))).collect())
     }
 
     /// Draw frames in one submit, nothing read back: for timing.
@@ -172,23 +203,39 @@ impl Engine {
         let (frame, scene) = (&mut self.frame, &self.scene);
         self.direct.draw(frame, scene, &camera, &self.footprint.depth_stencil)?;
         self.footprint.draw(frame, scene, &camera)?;
-        self.record.clear(frame)?;
-        let mut view = View {
+        let view = View {
             camera,
             size: self.options.size,
             direct: &self.direct,
             footprint: &self.footprint,
             reflectors: &[],
+            lobe: Lobe::Reflected,
             cut,
         };
-        for part in &mut self.parts {
-            view.reflectors = &part.reflectors;
-            part.method.reflect(frame, scene, &view, &mut self.record)?;
+        let lobes =
+            [(Lobe::Reflected, Some(&mut self.record)), (Lobe::Refracted, self.refracted.as_mut())];
+        for (lobe, record) in lobes {
+            let Some(record) = record else { continue };
+            record.clear(frame)?;
+            for Part { info, method, reflectors, glass, .. } in &mut self.parts {
+                let asked: &[ObjectId] = match lobe {
+                    Lobe::Reflected => reflectors,
+                    Lobe::Refracted if info.refracts => glass,
+                    Lobe::Refracted => &[],
+                };
+                if !asked.is_empty() {
+                    let view = View { reflectors: asked, lobe, ..view };
+                    method.reflect(frame, scene, &view, record)?;
+                }
+            }
+            if let Some(fallback) = &self.fallback {
+                let all = scene.scene.with_lobe(lobe);
+                let view = View { reflectors: &all, lobe, ..view };
+                fallback.fill(frame, scene, &view, record)?;
+            }
         }
-        if let Some(fallback) = &self.fallback {
-            fallback.fill(frame, scene, &view, &self.record)?;
-        }
-        self.composite.run(frame, scene, &self.direct, &self.footprint, &self.record)?;
+        let refracted = self.refracted.as_ref();
+        self.composite.run(frame, scene, &view, &self.record, refracted)?;
         let end = self.frame.scopes();
         Ok(Recording { prepare: start..prepared, passes: prepared..end })
     }
@@ -210,6 +257,19 @@ impl Engine {
             // What a later call frees, an earlier one had allocated.
             self.prepare_bytes = (self.prepare_bytes + after).saturating_sub(before);
             part.prepared = Some(moment.clone());
+        }
+        self.prepare_fallback(moment)
+    }
+
+    /// Prepare the fallback where it depends on what moved.
+    fn prepare_fallback(&mut self, moment: &Moment) -> Result<()> {
+        let Some(fallback) = self.fallback.as_mut().filter(|fallback| fallback.has_tree()) else {
+            return Ok(());
+        };
+        let moved = |before: &Moment| before.poses != moment.poses;
+        if self.fallback_prepared.as_ref().is_none_or(moved) {
+            fallback.prepare(&mut self.frame, &self.scene)?;
+            self.fallback_prepared = Some(moment.clone());
         }
         Ok(())
     }
@@ -243,6 +303,7 @@ impl Engine {
             position: xyz(self.footprint.position.read()?),
             normal: xyz(self.footprint.normal.read()?),
             record: self.record.read()?,
+            refracted: self.refracted.as_ref().map(ReflectionRecord::read).transpose()?,
         })
     }
 }
@@ -287,7 +348,9 @@ fn parts(
             size: options.size,
             reflectors: &reflectors,
         })?;
-        parts.push(Part { info, method, reflectors, prepared: None });
+        let glass = scene.scene.with_lobe(Lobe::Refracted);
+        let glass = reflectors.iter().filter(|object| glass.contains(object)).copied().collect();
+        parts.push(Part { info, method, reflectors, glass, prepared: None });
     }
     Ok(parts)
 }

@@ -3,8 +3,9 @@
 //! Channels: `R,G,B` picture and `reflection.R/G/B` radiance along the chain, half; `Z` depth,
 //! `shown.X/Y/Z/W` point, `last.X/Y/Z/W` last bounce and path length, `position.X/Y/Z` and
 //! `normal.X/Y/Z` of the reflector, float; `shown.object`, `.triangle`, `.trace`, `.order`,
-//! `.lobe`, `.status`, `.source`, `.flag`, `object.id` seen directly and `reflector.id`, uint. ZIP,
-//! linear Rec.709.
+//! `.lobe`, `.status`, `.source`, `.flag`, `object.id` seen directly and `reflector.id`, uint. What
+//! glass lets through is in `refraction.*`, `refracted.*` and `refracted-last.*` in place of
+//! `reflection.*`, `shown.*` and `last.*`, in scenes that have glass. ZIP, linear Rec.709.
 
 use std::collections::HashMap;
 use std::io;
@@ -18,7 +19,7 @@ use glam::{Vec3, Vec4};
 
 use super::output::write_file;
 use crate::error::{Error, Result};
-use crate::scene::{FrameRecord, Ids, ReflectionRecord};
+use crate::scene::{FrameRecord, Ids, Lobe, ReflectionRecord};
 
 /// Where a frame comes from: the text attributes of its file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,16 +42,22 @@ const RGB: [&str; 3] = ["R", "G", "B"];
 const XYZ: [&str; 3] = ["X", "Y", "Z"];
 const XYZW: [&str; 4] = ["X", "Y", "Z", "W"];
 
-/// A channel of identities: its name, the word of [`Ids`] it is part of, its lowest bit, its mask.
+/// Layers of a lobe's record: radiance, point and ids, last bounce.
+const LAYERS: [(Lobe, [&str; 3]); 2] = [
+    (Lobe::Reflected, ["reflection", "shown", "last"]),
+    (Lobe::Refracted, ["refraction", "refracted", "refracted-last"]),
+];
+
+/// A channel of identities: its name in its layer, the word of [`Ids`] it is part of, its lowest bit, its mask.
 const ID_CHANNELS: [(&str, usize, u32, u32); 8] = [
-    ("shown.object", 0, 0, u32::MAX),
-    ("shown.triangle", 1, 0, u32::MAX),
-    ("shown.trace", 2, 0, u32::MAX),
-    ("shown.order", 3, 0, 0xff),
-    ("shown.lobe", 3, 8, 0xf),
-    ("shown.status", 3, 12, 0xf),
-    ("shown.source", 3, 16, 0xf),
-    ("shown.flag", 3, 20, 0x1),
+    ("object", 0, 0, u32::MAX),
+    ("triangle", 1, 0, u32::MAX),
+    ("trace", 2, 0, u32::MAX),
+    ("order", 3, 0, 0xff),
+    ("lobe", 3, 8, 0xf),
+    ("status", 3, 12, 0xf),
+    ("source", 3, 16, 0xf),
+    ("flag", 3, 20, 0x1),
 ];
 
 /// Writes the EXR. Colours are rounded to half precision; everything else is exact.
@@ -85,22 +92,27 @@ fn channels(frame: &FrameRecord) -> Vec<AnyChannel<FlatSamples>> {
         |values: &[Vec3], i: usize| FlatSamples::F32(values.iter().map(|v| v[i]).collect());
     let wide = |values: &[Vec4], i: usize| FlatSamples::F32(values.iter().map(|v| v[i]).collect());
     let mut add = |name: String, samples| list.push(AnyChannel::new(name.as_str(), samples));
-    let record = &frame.record;
     for (i, name) in RGB.iter().enumerate() {
         add((*name).to_owned(), halves(&frame.colour, i));
-        add(format!("reflection.{name}"), halves(&record.radiance, i));
     }
     for (i, name) in XYZ.iter().enumerate() {
         add(format!("position.{name}"), floats(&frame.position, i));
         add(format!("normal.{name}"), floats(&frame.normal, i));
     }
-    for (i, name) in XYZW.iter().enumerate() {
-        add(format!("shown.{name}"), wide(&record.point, i));
-        add(format!("last.{name}"), wide(&record.last, i));
-    }
-    for (name, word, shift, mask) in ID_CHANNELS {
-        let bits = |ids: &Ids| words(ids)[word] >> shift & mask;
-        add(name.to_owned(), FlatSamples::U32(record.ids.iter().map(bits).collect()));
+    for (lobe, [light, shown, last]) in LAYERS {
+        let Some(record) = frame.lobe(lobe) else { continue };
+        for (i, name) in RGB.iter().enumerate() {
+            add(format!("{light}.{name}"), halves(&record.radiance, i));
+        }
+        for (i, name) in XYZW.iter().enumerate() {
+            add(format!("{shown}.{name}"), wide(&record.point, i));
+            add(format!("{last}.{name}"), wide(&record.last, i));
+        }
+        for (name, word, shift, mask) in ID_CHANNELS {
+            let bits = |ids: &Ids| words(ids)[word] >> shift & mask;
+            let values = record.ids.iter().map(bits).collect();
+            add(format!("{shown}.{name}"), FlatSamples::U32(values));
+        }
     }
     add("Z".to_owned(), FlatSamples::F32(frame.depth.clone()));
     add("object.id".to_owned(), FlatSamples::U32(frame.object.clone()));
@@ -150,48 +162,42 @@ struct Channels(HashMap<String, FlatSamples>);
 impl Channels {
     fn frame(&mut self, size: [u32; 2]) -> Result<FrameRecord, String> {
         let pixels = size[0] as usize * size[1] as usize;
+        let vec3 = |v: Vec<[f32; 3]>| v.into_iter().map(Vec3::from_array).collect();
+        let [(_, reflected), (_, refracted)] = LAYERS;
+        let has_glass = self.0.contains_key(&format!("{}.{}", refracted[1], ID_CHANNELS[0].0));
+        Ok(FrameRecord {
+            size,
+            colour: vec3(self.vectors("", RGB, pixels)?),
+            depth: self.floats("Z")?,
+            object: self.uints("object.id")?,
+            reflector: self.uints("reflector.id")?,
+            position: vec3(self.vectors("position.", XYZ, pixels)?),
+            normal: vec3(self.vectors("normal.", XYZ, pixels)?),
+            record: self.record(reflected, pixels)?,
+            refracted: has_glass.then(|| self.record(refracted, pixels)).transpose()?,
+        })
+    }
+
+    fn record(
+        &mut self,
+        [light, shown, last]: [&str; 3],
+        pixels: usize,
+    ) -> Result<ReflectionRecord, String> {
+        let vec4 = |v: Vec<[f32; 4]>| v.into_iter().map(Vec4::from_array).collect();
         let mut ids = vec![[0; 4]; pixels];
         for (name, word, shift, _) in ID_CHANNELS {
-            for (id, bits) in ids.iter_mut().zip(self.uints(name)?) {
+            for (id, bits) in ids.iter_mut().zip(self.uints(&format!("{shown}.{name}"))?) {
                 id[word] |= bits << shift;
             }
         }
         let unpack =
             |[object, triangle, trace, bits]: [u32; 4]| Ids { object, triangle, trace, bits };
-        Ok(FrameRecord {
-            size,
-            colour: self.vectors("", RGB, pixels)?.into_iter().map(Vec3::from_array).collect(),
-            depth: self.floats("Z")?,
-            object: self.uints("object.id")?,
-            reflector: self.uints("reflector.id")?,
-            position: self
-                .vectors("position.", XYZ, pixels)?
-                .into_iter()
-                .map(Vec3::from_array)
-                .collect(),
-            normal: self
-                .vectors("normal.", XYZ, pixels)?
-                .into_iter()
-                .map(Vec3::from_array)
-                .collect(),
-            record: ReflectionRecord {
-                radiance: self
-                    .vectors("reflection.", RGB, pixels)?
-                    .into_iter()
-                    .map(Vec3::from_array)
-                    .collect(),
-                point: self
-                    .vectors("shown.", XYZW, pixels)?
-                    .into_iter()
-                    .map(Vec4::from_array)
-                    .collect(),
-                last: self
-                    .vectors("last.", XYZW, pixels)?
-                    .into_iter()
-                    .map(Vec4::from_array)
-                    .collect(),
-                ids: ids.into_iter().map(unpack).collect(),
-            },
+        let light = self.vectors(&format!("{light}."), RGB, pixels)?;
+        Ok(ReflectionRecord {
+            radiance: light.into_iter().map(Vec3::from_array).collect(),
+            point: vec4(self.vectors(&format!("{shown}."), XYZW, pixels)?),
+            last: vec4(self.vectors(&format!("{last}."), XYZW, pixels)?),
+            ids: ids.into_iter().map(unpack).collect(),
         })
     }
 
@@ -288,11 +294,14 @@ mod tests {
             commit: "abc".into(),
             device: "llvmpipe".into(),
         };
-        let frame = varied([7, 5]);
-        write_exr(&path, &frame, &from).unwrap();
-        let back = read_exr(&path).unwrap();
-        assert_eq!(back.from, from);
-        assert!(back.frame == frame, "the frame came back changed");
+        let mut frame = varied([7, 5]);
+        for refracted in [None, Some(frame.record.clone())] {
+            frame.refracted = refracted;
+            write_exr(&path, &frame, &from).unwrap();
+            let back = read_exr(&path).unwrap();
+            assert_eq!(back.from, from);
+            assert!(back.frame == frame, "the frame came back changed");
+        }
     }
 
     #[test]

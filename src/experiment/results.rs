@@ -224,13 +224,14 @@ fn typed(kind: Option<Kind>, text: &str) -> Value {
 }
 
 impl Fallback {
-    pub const NAMES: [(&'static str, Fallback); 2] =
-        [("none", Fallback::None), ("environment", Fallback::Environment)];
+    pub const NAMES: [(&'static str, Fallback); 3] =
+        [("none", Fallback::None), ("environment", Fallback::Environment), ("ray", Fallback::Ray)];
 
     pub fn name(self) -> &'static str {
         match self {
             Fallback::None => "none",
             Fallback::Environment => "environment",
+            Fallback::Ray => "ray",
         }
     }
 }
@@ -366,6 +367,7 @@ pub(super) mod tests {
             family: crate::methods::Family::Baseline,
             depends: crate::methods::Changes { objects: false, reflectors: false, shading: false },
             flags: false,
+            refracts: false,
             variants: &["published"],
             params: &[
                 param("steps", Kind::Integer { min: 0, max: 9 }),

@@ -9,6 +9,7 @@ pub mod cube;
 pub mod mesh;
 pub mod optics;
 pub mod shapes;
+pub mod tree;
 
 pub use camera::{Camera, Projection};
 pub use mesh::Mesh;

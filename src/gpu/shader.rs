@@ -107,11 +107,14 @@ impl Shaders {
             let before = waiting.len();
             let composer = &self.composer;
             // An import names a module, or an item of one: `common::ray` or `common::ray::at`.
+            let of = |import: &str, module: &str| {
+                import
+                    .strip_prefix(module)
+                    .is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
+            };
             let ready = |imports: &[String]| {
                 imports.iter().all(|import| {
-                    names
-                        .iter()
-                        .all(|n| !import.starts_with(n.as_str()) || composer.contains_module(n))
+                    names.iter().all(|name| !of(import, name) || composer.contains_module(name))
                 })
             };
             let (now, later): (Vec<_>, Vec<_>) =

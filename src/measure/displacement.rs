@@ -11,10 +11,9 @@ use std::collections::BinaryHeap;
 use glam::{UVec2, Vec2, Vec3};
 
 use super::field::{Field, Key, Segment, Target, Trees};
-use super::root::{Guess, at_rim, centre, on_triangle, polish, traced_guess};
+use super::root::{CONFIRMED_PX, Guess, at_rim, centre, on_triangle, polish, traced_guess};
 use super::tree::{Place, Tree};
-use crate::geometry::optics::reflect;
-use crate::truth::{Chain, Tracer};
+use crate::truth::{Bounce, Chain, Tracer};
 
 /// Beyond this a point counts as unreachable: drawn where it belongs nowhere near.
 pub(super) const REACH_PX: f32 = 256.0;
@@ -30,6 +29,9 @@ const TRACED_RIM_PX: f32 = 4.0;
 
 /// The slope of a guess is taken from rays that far beside it.
 const SLOPE_STEP_PX: f32 = 0.25;
+
+/// The same for chains narrower than that.
+const SLIVER_STEPS_PX: [f32; 3] = [0.05, 0.01, 0.002];
 
 /// What is asked of one pixel.
 pub(super) struct Query<'a> {
@@ -79,7 +81,17 @@ impl Query<'_> {
             }
         }
         self.trace_rims(&mut best);
-        best.root.map(|root| root.distance(best.of))
+        best.root.map(|root| root.distance(best.of)).or_else(|| self.within_sliver())
+    }
+
+    /// The root next to the pixel's own centre where its chain is too narrow for the search: seen
+    /// through three mirrors or more, a chain may be a hundredth of a pixel wide.
+    fn within_sliver(&self) -> Option<f32> {
+        let trace = |position| self.trace(position);
+        let off = |step_px: &f32| {
+            traced_guess(self.target, centre(self.pixel), *step_px, trace)?.distance()
+        };
+        SLIVER_STEPS_PX.iter().filter_map(off).find(|&off| off < CONFIRMED_PX)
     }
 
     fn enqueue(
@@ -162,17 +174,21 @@ impl Query<'_> {
     fn trace(&self, position: Vec2) -> Option<Segment> {
         let ray = self.tracer.moment().camera.ray(self.size, position);
         let mut hit = self.tracer.look(&ray)?;
-        let mut mirrored = ray.direction;
+        let mut incident = ray.direction;
+        let mut last = Segment::default();
         for (index, bounce) in self.chain.bounces.iter().enumerate() {
-            if index > 0 {
-                hit = self.tracer.leave(&hit, mirrored)?;
-            }
             if hit.object != bounce.hit.object {
                 return None;
             }
-            mirrored = reflect(mirrored, hit.normal);
+            let lobe = bounce.lobe;
+            let outgoing = self.tracer.depart(&hit, incident, lobe)?.direction;
+            last = Segment { origin: hit.point, direction: outgoing };
+            if index + 1 < self.chain.bounces.len() {
+                hit = self.tracer.leave(&Bounce { hit, lobe, outgoing })?;
+                incident = outgoing;
+            }
         }
-        Some(Segment { origin: hit.point, direction: mirrored })
+        Some(last)
     }
 }
 
@@ -215,7 +231,7 @@ mod tests {
     use super::*;
     use crate::measure::field::key;
     use crate::measure::judge::chains;
-    use crate::scene::{self, Status};
+    use crate::scene::{self, Lobe, Status};
     use crate::truth::TruthOptions;
 
     impl Query<'_> {
@@ -254,7 +270,7 @@ mod tests {
     fn ask(scene: &str, frame: u32, size: [u32; 2], stride: usize, mut answer: impl FnMut(Query)) {
         let scene = scene::load(scene).unwrap();
         let tracer = Tracer::new(&scene, &scene.at(frame), TruthOptions::default());
-        let chains = chains(&tracer, size);
+        let chains = chains(&tracer, size, Lobe::Reflected);
         let longest = chains.iter().flatten().map(Chain::order).max().unwrap();
         let fields: Vec<Field> = (1..=longest).map(|n| Field::new(size, &chains, n)).collect();
         let mirrors: Vec<usize> = (0..chains.len()).filter(|&i| chains[i].is_some()).collect();
@@ -272,7 +288,7 @@ mod tests {
                 field: &fields[chain.order() as usize - 1],
                 pixel: UVec2::new(pixel as u32 % size[0], pixel as u32 / size[0]),
                 chain,
-                key: key(chain.trace, chain.order()),
+                key: key(chain, chain.order()),
                 target: Target::new(point),
             });
         }

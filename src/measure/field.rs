@@ -47,16 +47,17 @@ pub(super) struct Segment {
     pub direction: Vec3,
 }
 
-/// Chains of the same mirrors have the same key.
-pub(super) type Key = u32;
+/// Chains of the same reflectors that mirror and refract alike have the same key.
+pub(super) type Key = u64;
 
-/// No chain here. No trace looks like this: a trace's highest byte is a fourth reflector's rank
-/// plus one, modulo 256.
-const NONE: Key = u32::MAX;
+/// No chain here. No trace and refractions look like this: a chain has at most 16 bounces.
+const NONE: Key = u64::MAX;
 
-/// The reflectors of the first `order` bounces of a chain, `order` at least 1.
-pub(super) fn key(trace: u32, order: u32) -> Key {
-    trace & (u32::MAX >> 32u32.saturating_sub(8 * order))
+/// The reflectors and the refractions of the first `order` bounces of a chain, `order` at least 1.
+pub(super) fn key(chain: &Chain, order: u32) -> Key {
+    let trace = chain.trace & (u32::MAX >> 32u32.saturating_sub(8 * order));
+    let refractions = chain.refractions() & ((1 << order.min(31)) - 1);
+    Key::from(trace) | Key::from(refractions) << 32
 }
 
 /// A position of the image and the segment there.
@@ -309,8 +310,8 @@ fn cell_pixels(UVec2 { x, y }: UVec2) -> [UVec2; 4] {
 
 fn last_of(chain: &Chain, order: u32) -> Option<(Key, Segment)> {
     let bounce = chain.bounces.get(order as usize - 1)?;
-    let segment = Segment { origin: bounce.hit.point, direction: bounce.mirrored };
-    Some((key(chain.trace, order), segment))
+    let segment = Segment { origin: bounce.hit.point, direction: bounce.outgoing };
+    Some((key(chain, order), segment))
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! One pixel's answer against the truth's.
+//! One pixel's answers against the truth's, one for each lobe of its reflector.
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
@@ -6,7 +6,8 @@ use rayon::prelude::*;
 use super::accuracy::Class;
 use super::displacement::{Query, Queue};
 use super::field::{Field, Target, key};
-use crate::scene::{FrameRecord, Ids, Status, shading};
+use crate::geometry::Ray;
+use crate::scene::{FrameRecord, Ids, Lobe, ReflectionRecord, Status, shading};
 use crate::truth::{Chain, Tracer};
 
 /// An answer seen within this of the mirrored direction is the pixel's own: single precision gives
@@ -17,7 +18,7 @@ const ROUNDING_DEG: f32 = 1e-4;
 /// Relative difference of distances over which a depth is wrong.
 const DEPTH_TOLERANCE: f32 = 0.05;
 
-/// What became of one compared pixel.
+/// What became of one compared pixel: the worse of its lobes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Judged {
     pub missing: bool,
@@ -46,6 +47,22 @@ impl Judged {
         shaded: [Vec3::ZERO; 2],
     };
 
+    /// A pixel of which another lobe became `other`: what is wrong with either is wrong with it.
+    fn with(self, other: Judged) -> Judged {
+        let displacements = self.displacement_px.zip(other.displacement_px);
+        let [[a, b], [c, d]] = [self.shaded, other.shaded];
+        Judged {
+            missing: self.missing || other.missing,
+            spurious: self.spurious || other.spurious,
+            wrong_object: self.wrong_object || other.wrong_object,
+            wrong_depth: self.wrong_depth || other.wrong_depth,
+            unreachable: self.unreachable || other.unreachable,
+            displacement_px: displacements.map(|(a, b)| a.max(b)),
+            angle_deg: self.angle_deg.max(other.angle_deg),
+            shaded: [a + c, b + d],
+        }
+    }
+
     pub fn class(&self) -> Class {
         let faults = [
             (self.missing, Class::Missing),
@@ -67,8 +84,12 @@ struct Answer {
 }
 
 impl Answer {
-    fn of(frame: &FrameRecord, pixel: usize) -> Self {
-        let (ids, point) = (frame.record.ids[pixel], frame.record.point[pixel]);
+    const NONE: Answer = Answer { status: Status::Missing, ids: Ids::MISSING, point: Vec4::ZERO };
+
+    /// Of a record, where there is one.
+    fn of(record: Option<&ReflectionRecord>, pixel: usize) -> Self {
+        let Some(record) = record else { return Answer::NONE };
+        let (ids, point) = (record.ids[pixel], record.point[pixel]);
         // A point that is not a number is no answer.
         let status = if point.is_finite() { ids.status() } else { Status::Missing };
         Answer { status, ids, point }
@@ -81,6 +102,8 @@ impl Answer {
     }
 }
 
+const LOBES: [Lobe; 2] = [Lobe::Reflected, Lobe::Refracted];
+
 /// Judge every compared pixel, in that order.
 pub(super) fn judge_all(
     truth: &FrameRecord,
@@ -88,25 +111,38 @@ pub(super) fn judge_all(
     tracer: &Tracer,
     compared: &[usize],
 ) -> Vec<Judged> {
-    let answers = |pixel: usize| [Answer::of(truth, pixel), Answer::of(tested, pixel)];
+    let lobes = || LOBES.into_iter().filter(|&lobe| truth.lobe(lobe).is_some());
+    let answers =
+        |lobe: Lobe, pixel: usize| [truth, tested].map(|frame| Answer::of(frame.lobe(lobe), pixel));
     let differs = |&pixel: &usize| {
-        let [expected, answer] = answers(pixel);
-        !expected.equals(&answer)
+        lobes().any(|lobe| {
+            let [expected, answer] = answers(lobe, pixel);
+            !expected.equals(&answer)
+        })
     };
     if !compared.iter().any(differs) {
         return vec![Judged::EQUAL; compared.len()];
     }
-    let court = Court::new(truth, tracer);
-    compared
-        .par_iter()
-        .map_init(Queue::new, |queue, &pixel| court.judge(pixel, answers(pixel), queue))
-        .collect()
+    let of_lobe = |lobe: Lobe| -> Vec<Option<Judged>> {
+        let court = Court::new(truth, tracer, lobe);
+        let judged = compared
+            .par_iter()
+            .map_init(Queue::new, |queue, &pixel| court.judge(pixel, answers(lobe, pixel), queue));
+        judged.collect()
+    };
+    let by_lobe: Vec<_> = lobes().map(of_lobe).collect();
+    let pixel = |i: usize| {
+        let judged = by_lobe.iter().filter_map(|lobe| lobe[i]);
+        judged.reduce(Judged::with).unwrap_or(Judged::EQUAL)
+    };
+    (0..compared.len()).map(pixel).collect()
 }
 
-/// What judging any pixel needs.
+/// What judging any pixel of one lobe needs.
 struct Court<'a> {
     tracer: &'a Tracer<'a>,
     truth: &'a FrameRecord,
+    lobe: Lobe,
     /// Every reflector pixel's chain.
     chains: Vec<Option<Chain>>,
     /// By order, from 1.
@@ -114,27 +150,35 @@ struct Court<'a> {
 }
 
 impl<'a> Court<'a> {
-    fn new(truth: &'a FrameRecord, tracer: &'a Tracer) -> Self {
+    fn new(truth: &'a FrameRecord, tracer: &'a Tracer, lobe: Lobe) -> Self {
         let size = truth.size;
-        let chains = chains(tracer, size);
+        let chains = chains(tracer, size, lobe);
         let longest = chains.iter().flatten().map(Chain::order).max().unwrap_or(0);
         let fields =
             (1..=longest).into_par_iter().map(|order| Field::new(size, &chains, order)).collect();
-        Court { tracer, truth, chains, fields }
+        Court { tracer, truth, lobe, chains, fields }
     }
 
-    fn judge(&self, pixel: usize, [expected, answer]: [Answer; 2], queue: &mut Queue) -> Judged {
+    /// `None` where neither the truth nor the other shows anything by this lobe.
+    fn judge(
+        &self,
+        pixel: usize,
+        [expected, answer]: [Answer; 2],
+        queue: &mut Queue,
+    ) -> Option<Judged> {
         let Some(chain) = &self.chains[pixel] else {
-            // The truth is not of this tracer; only equality can be told.
-            return if expected.equals(&answer) {
+            // The lobe is not there, or the truth is not of this tracer: only equality can be told.
+            let bare = expected == Answer::NONE && answer.status == Status::Missing;
+            let judged = if expected.equals(&answer) {
                 Judged::EQUAL
             } else {
                 Judged { missing: true, ..Judged::default() }
             };
+            return (!bare).then_some(judged);
         };
         let shaded = self.shaded(pixel, chain, &expected, &answer);
         if expected.equals(&answer) {
-            return Judged { shaded, ..Judged::EQUAL };
+            return Some(Judged { shaded, ..Judged::EQUAL });
         }
         let found = |answer: &Answer| answer.status == Status::Found;
         let both_found = found(&expected) && found(&answer);
@@ -149,7 +193,7 @@ impl<'a> Court<'a> {
         } else {
             self.displacement(pixel, chain, target, queue)
         };
-        Judged {
+        Some(Judged {
             missing,
             spurious,
             wrong_object: both_found && expected.ids.object != answer.ids.object,
@@ -158,7 +202,7 @@ impl<'a> Court<'a> {
             displacement_px,
             angle_deg,
             shaded,
-        }
+        })
     }
 
     fn displacement(
@@ -174,22 +218,35 @@ impl<'a> Court<'a> {
             field: &self.fields[chain.order() as usize - 1],
             pixel: at(self.truth.size, pixel),
             chain,
-            key: key(chain.trace, chain.order()),
+            key: key(chain, chain.order()),
             target,
         };
         query.displacement(queue)
     }
 
-    /// The colour at the pixel's centre as traced, and as it were with the answer at the chain's
-    /// end. No answer is black.
+    /// What this lobe adds to the colour at the pixel's centre, as traced and as it were with the
+    /// answer at the chain's end; the reflector's own light with the first lobe. No answer is black.
     fn shaded(&self, pixel: usize, chain: &Chain, expected: &Answer, answer: &Answer) -> [Vec3; 2] {
-        let traced = self.truth.record.radiance[pixel];
-        let arriving = if expected.equals(answer) { traced } else { self.relit(chain, answer) };
-        let reflector = &chain.bounces[0].hit;
-        [traced, arriving].map(|radiance| self.tracer.composite(reflector, radiance))
+        let arriving =
+            if expected.equals(answer) { chain.radiance } else { self.arriving(chain, answer) };
+        let first = &chain.bounces[0];
+        let own = match self.lobe {
+            Lobe::Reflected => self.tracer.diffuse(&first.hit),
+            Lobe::Refracted => Vec3::ZERO,
+        };
+        let incident = self.eye_ray(pixel).direction;
+        let way = self.tracer.depart(&first.hit, incident, self.lobe);
+        let weight = way.map_or(Vec3::ZERO, |way| way.weight);
+        [chain.radiance, arriving].map(|radiance| own + weight * radiance)
     }
 
-    fn relit(&self, chain: &Chain, answer: &Answer) -> Vec3 {
+    fn eye_ray(&self, pixel: usize) -> Ray {
+        let size = self.truth.size;
+        self.tracer.moment().camera.ray(size, at(size, pixel).as_vec2() + 0.5)
+    }
+
+    /// Light arriving at R with the answer at the chain's end.
+    fn arriving(&self, chain: &Chain, answer: &Answer) -> Vec3 {
         let tracer = self.tracer;
         let end = match answer.status {
             Status::Missing => return Vec3::ZERO,
@@ -200,21 +257,20 @@ impl<'a> Court<'a> {
                 let Ids { object, triangle, .. } = answer.ids;
                 let hit = tracer.surface_at(object, triangle, point, incident);
                 let left = tracer.bounces().saturating_sub(chain.order());
-                hit.map_or(Vec3::ZERO, |hit| tracer.leaving(&hit, incident, left))
+                hit.map_or(Vec3::ZERO, |hit| tracer.leaving(&hit, incident, left, chain.throughput))
             }
         };
-        tracer.through(&chain.bounces, end)
+        chain.relit(end)
     }
 }
 
-/// Every reflector pixel's chain, as the truth traces it.
-pub(super) fn chains(tracer: &Tracer, size: [u32; 2]) -> Vec<Option<Chain>> {
+/// Every reflector pixel's chain by a lobe, as the truth traces it.
+pub(super) fn chains(tracer: &Tracer, size: [u32; 2], lobe: Lobe) -> Vec<Option<Chain>> {
     (0..(size[0] * size[1]) as usize)
         .into_par_iter()
         .map(|pixel| {
             let ray = tracer.moment().camera.ray(size, at(size, pixel).as_vec2() + 0.5);
-            let hit = tracer.look(&ray).filter(|hit| tracer.mirror(hit).is_some())?;
-            Some(tracer.chain(hit, ray.direction))
+            tracer.chain(tracer.look(&ray)?, ray.direction, lobe)
         })
         .collect()
 }
@@ -233,6 +289,6 @@ fn wrong_depth(chain: &Chain, expected: Vec3, answer: Vec3) -> bool {
 /// Angle at the last mirror; by the chord, which keeps small angles.
 fn angle_deg(chain: &Chain, target: Target) -> f32 {
     let towards = target.seen_from(chain.last().hit.point);
-    let chord = towards.distance(chain.last().mirrored);
+    let chord = towards.distance(chain.last().outgoing);
     2.0 * (0.5 * chord).min(1.0).asin().to_degrees()
 }

@@ -17,7 +17,7 @@ pub(super) const RIM_PX: f32 = 2.5;
 const TOLERANCE_PX: f32 = 0.005;
 
 /// What the measure promises, pixels: no root is off by more.
-const CONFIRMED_PX: f32 = 0.05;
+pub(super) const CONFIRMED_PX: f32 = 0.05;
 
 /// Longest step of the polishing, pixels.
 const LONGEST_STEP_PX: f32 = 2.0;
@@ -60,6 +60,13 @@ pub(super) struct Guess {
     pub slope: Mat2,
     /// The miss at the position where it is known already.
     pub off: Option<Vec2>,
+}
+
+impl Guess {
+    /// Pixels from the position to where the root seems to be by the slope there.
+    pub fn distance(&self) -> Option<f32> {
+        Some(step(&self.slope, self.off?)?.length())
+    }
 }
 
 /// The root of the miss on a triangle of pixel centres, taken to be linear between them.

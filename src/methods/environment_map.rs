@@ -22,6 +22,7 @@ pub const INFO: MethodInfo = MethodInfo {
     family: Family::ImageSpace,
     depends: Changes::ALL,
     flags: false,
+    refracts: true,
     variants: &["published"],
     params: &[
         Param {

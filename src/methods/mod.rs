@@ -9,6 +9,7 @@ pub mod nearest;
 mod none;
 pub mod params;
 mod planar_mirror;
+mod ray_traced;
 mod truth;
 
 use std::sync::Arc;
@@ -111,6 +112,8 @@ pub struct MethodInfo {
     pub depends: Changes,
     /// Whether the method ever sets the flag.
     pub flags: bool,
+    /// Whether it fills the record of what glass lets through; otherwise that stays missing.
+    pub refracts: bool,
     /// The first is the default; a method without variants has one, "published".
     pub variants: &'static [&'static str],
     pub params: &'static [Param],
@@ -126,4 +129,4 @@ pub struct MethodInfo {
 
 /// The methods a user can name.
 pub static METHODS: &[MethodInfo] =
-    &[truth::INFO, none::INFO, environment_map::INFO, planar_mirror::INFO];
+    &[truth::INFO, none::INFO, ray_traced::INFO, environment_map::INFO, planar_mirror::INFO];

@@ -12,6 +12,7 @@ pub const INFO: MethodInfo = MethodInfo {
     family: Family::Baseline,
     depends: Changes { objects: false, reflectors: false, shading: false },
     flags: false,
+    refracts: false,
     variants: &["published"],
     params: &[],
     limits: "every reflector pixel is missing",

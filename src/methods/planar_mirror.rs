@@ -17,6 +17,7 @@ pub const INFO: MethodInfo = MethodInfo {
     family: Family::FeedForward,
     depends: Changes { objects: false, reflectors: false, shading: false },
     flags: false,
+    refracts: false,
     variants: &["published"],
     params: &[],
     limits: "flat reflectors only; one bounce",

@@ -9,6 +9,7 @@ pub const INFO: MethodInfo = MethodInfo {
     family: Family::Baseline,
     depends: Changes::ALL,
     flags: false,
+    refracts: true,
     variants: &["published"],
     params: &[
         Param {

@@ -8,8 +8,17 @@ pub struct Material {
     pub name: String,
     /// Diffuse albedo; black on a pure mirror.
     pub pattern: Pattern,
-    /// Present on reflectors.
+    /// Present on mirrors.
     pub mirror: Option<Mirror>,
+    /// Present on glass, which is no mirror.
+    pub glass: Option<Glass>,
+}
+
+impl Material {
+    /// Whether it is a mirror or glass.
+    pub fn is_reflector(&self) -> bool {
+        self.mirror.is_some() || self.glass.is_some()
+    }
 }
 
 /// Diffuse albedo over texture coordinates.
@@ -43,6 +52,15 @@ pub struct Mirror {
     /// Share of light reflected, 0 to 1.
     pub reflectance: f32,
     /// Colour multiplied onto the reflection.
+    pub tint: Vec3,
+}
+
+/// The inside of a closed surface: light is split between reflection and refraction (Fresnel).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Glass {
+    /// Refractive index of the inside over that of the outside.
+    pub index: f32,
+    /// Colour multiplied onto light each time it passes through the surface.
     pub tint: Vec3,
 }
 
@@ -81,4 +99,6 @@ pub struct Lighting {
     pub towards_sun: Vec3,
     /// Multiplied by albedo and the cosine to the normal.
     pub sun: Vec3,
+    /// Whether surfaces keep the sun from others. Glass never does.
+    pub shadows: bool,
 }

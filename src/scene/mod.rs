@@ -3,6 +3,7 @@
 //! A [`Scene`] comes from a TOML file ([`load`]); a [`Moment`] is one frame of it. Neither knows
 //! how it will be drawn: [`crate::truth`] traces it, [`crate::stages`] uploads it.
 
+mod departure;
 mod file;
 mod library;
 pub mod material;
@@ -14,8 +15,9 @@ pub mod shading;
 use glam::{Affine3A, Vec3};
 
 use crate::geometry::{Camera, Mesh};
+pub use departure::Departure;
 pub use library::{SCENES_VARIABLE, list, load, scenes_dir};
-pub use material::{Environment, Image, Lighting, Material, Mirror, Pattern};
+pub use material::{Environment, Glass, Image, Lighting, Material, Mirror, Pattern};
 pub use record::{FrameRecord, Ids, Lobe, ReflectionRecord, Source, Status};
 pub use select::matches_pattern;
 
@@ -111,11 +113,26 @@ impl Scene {
         &self.meshes[self.objects[object as usize].mesh]
     }
 
+    /// Whether an object is a mirror or of glass.
     pub fn is_reflector(&self, object: ObjectId) -> bool {
-        self.material_of(object).mirror.is_some()
+        self.material_of(object).is_reflector()
     }
 
-    /// The objects with a mirror, in rising order.
+    /// Whether anything is of glass, so that reflectors have a second lobe.
+    pub fn refracts(&self) -> bool {
+        self.objects.iter().any(|object| self.materials[object.material].glass.is_some())
+    }
+
+    /// The reflectors that light leaves by a lobe, in rising order.
+    pub fn with_lobe(&self, lobe: Lobe) -> Vec<ObjectId> {
+        let mut reflectors = self.reflectors();
+        if lobe == Lobe::Refracted {
+            reflectors.retain(|&object| self.material_of(object).glass.is_some());
+        }
+        reflectors
+    }
+
+    /// The mirrors and things of glass, in rising order.
     pub fn reflectors(&self) -> Vec<ObjectId> {
         (0..self.objects.len() as ObjectId).filter(|&o| self.is_reflector(o)).collect()
     }

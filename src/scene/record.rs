@@ -60,6 +60,11 @@ impl Ids {
         Ids { object, triangle, trace, bits: order | (status as u32) << 12 }
     }
 
+    /// The same for a chain that leaves the first reflector by `lobe`.
+    pub fn by(self, lobe: Lobe) -> Self {
+        Ids { bits: self.bits & !(0xf << 8) | (lobe as u32) << 8, ..self }
+    }
+
     /// Number of reflectors met.
     pub fn order(self) -> u32 {
         self.bits & 0xff
@@ -140,7 +145,10 @@ pub struct FrameRecord {
     pub position: Vec<Vec3>,
     /// N: the reflector's unit shading normal there, on the side of the eye.
     pub normal: Vec<Vec3>,
+    /// The chains that the reflectors mirror.
     pub record: ReflectionRecord,
+    /// The chains that glass lets through; only of scenes that have any.
+    pub refracted: Option<ReflectionRecord>,
 }
 
 impl FrameRecord {
@@ -156,6 +164,15 @@ impl FrameRecord {
             position: vec![Vec3::ZERO; pixels],
             normal: vec![Vec3::ZERO; pixels],
             record: ReflectionRecord::missing(pixels),
+            refracted: None,
+        }
+    }
+
+    /// The record of a lobe, where the scene has it.
+    pub fn lobe(&self, lobe: Lobe) -> Option<&ReflectionRecord> {
+        match lobe {
+            Lobe::Reflected => Some(&self.record),
+            Lobe::Refracted => self.refracted.as_ref(),
         }
     }
 

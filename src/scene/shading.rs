@@ -12,10 +12,10 @@ use super::{Environment, Image, Material, ObjectId, Pattern, Scene};
 /// Light a surface sends out, without what its mirror reflects: albedo times light.
 ///
 /// `normal_ws` has unit length and points to the side the ray arrives from; `uv` are the mesh's
-/// texture coordinates there.
-pub fn shade(scene: &Scene, object: ObjectId, normal_ws: Vec3, uv: Vec2) -> Vec3 {
+/// texture coordinates there. `sunlit`: nothing stands between the sun and the surface.
+pub fn shade(scene: &Scene, object: ObjectId, normal_ws: Vec3, uv: Vec2, sunlit: bool) -> Vec3 {
     let light = &scene.lighting;
-    let cosine = normal_ws.dot(light.towards_sun).max(0.0);
+    let cosine = if sunlit { normal_ws.dot(light.towards_sun).max(0.0) } else { 0.0 };
     albedo(scene, scene.material_of(object), uv) * (light.ambient + light.sun * cosine)
 }
 
@@ -117,13 +117,19 @@ mod tests {
                 motion: Motion::Still(Affine3A::IDENTITY),
             }],
             meshes: vec![Mesh::default()],
-            materials: vec![Material { name: "only".to_owned(), pattern, mirror: None }],
+            materials: vec![Material {
+                name: "only".to_owned(),
+                pattern,
+                mirror: None,
+                glass: None,
+            }],
             images,
             environment,
             lighting: Lighting {
                 ambient: Vec3::splat(0.25),
                 towards_sun: Vec3::Y,
                 sun: Vec3::new(1.0, 0.5, 0.0),
+                shadows: true,
             },
             bounces: 1,
         }
@@ -139,9 +145,10 @@ mod tests {
     fn light_is_ambient_plus_the_cosine_to_the_sun() {
         let scene = scene(Pattern::Colour(Vec3::splat(0.5)), BLACK, vec![]);
         let slanted = Vec3::new(0.8, 0.6, 0.0);
-        let at = |normal| shade(&scene, 0, normal, Vec2::ZERO);
-        assert!(at(slanted).abs_diff_eq(0.5 * Vec3::new(0.85, 0.55, 0.25), 1e-6));
-        assert_eq!(at(Vec3::NEG_Y), Vec3::splat(0.125), "no light from behind");
+        let at = |normal, sunlit| shade(&scene, 0, normal, Vec2::ZERO, sunlit);
+        assert!(at(slanted, true).abs_diff_eq(0.5 * Vec3::new(0.85, 0.55, 0.25), 1e-6));
+        assert_eq!(at(Vec3::NEG_Y, true), Vec3::splat(0.125), "no light from behind");
+        assert_eq!(at(Vec3::Y, false), Vec3::splat(0.125), "nor in the shade");
     }
 
     #[test]

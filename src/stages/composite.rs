@@ -1,8 +1,8 @@
-//! Records into the picture.
+//! The records of all lobes into the picture.
 
 use std::sync::Arc;
 
-use super::{DirectView, Footprint, GpuScene, ReflectionRecord};
+use super::{GpuScene, ReflectionRecord, View};
 use crate::error::Result;
 use crate::gpu::{ComputePipeline, Device, Format, Frame, Image, Shape};
 
@@ -14,9 +14,10 @@ pub struct Composite {
 }
 
 impl Composite {
-    pub fn new(device: &Arc<Device>, size: [u32; 2]) -> Result<Composite> {
+    pub fn new(device: &Arc<Device>, scene: &GpuScene, size: [u32; 2]) -> Result<Composite> {
+        let file = "stages/composite.wgsl";
         Ok(Composite {
-            pipeline: ComputePipeline::new(device, "stages/composite.wgsl", &[])?,
+            pipeline: ComputePipeline::new(device, file, &scene.defines())?,
             picture: Image::new(device, "picture", Format::Rgba16Float, size, Shape::Flat)?,
         })
     }
@@ -25,16 +26,17 @@ impl Composite {
         &self,
         frame: &mut Frame,
         scene: &GpuScene,
-        direct: &DirectView,
-        footprint: &Footprint,
+        view: &View,
         record: &ReflectionRecord,
+        refracted: Option<&ReflectionRecord>,
     ) -> Result<()> {
         let pass = frame.pass("composite").compute(&self.pipeline);
-        scene
-            .bind(pass)
-            .sample("direct", &direct.colour)
+        let mut pass = view.bind(scene.bind(pass));
+        if let Some(refracted) = refracted {
+            pass = pass.sample("refracted", &refracted.radiance);
+        }
+        pass.sample("direct", &view.direct.colour)
             .sample("radiance", &record.radiance)
-            .sample("reflector_id", &footprint.reflector)
             .store("picture", &self.picture)
             .over_pixels(self.picture.size)
     }

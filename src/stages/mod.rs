@@ -1,5 +1,5 @@
 //! What every method shares on the GPU: the scene, the direct view, the reflectors' footprint, the
-//! captured map, the record, the fallback and the composite. Each is written here once, so two
+//! captured map, the tree for rays, the record, the fallback and the composite. Each is written here once, so two
 //! methods differ only in what they find.
 
 mod capture;
@@ -9,13 +9,15 @@ mod fallback;
 mod footprint;
 mod record;
 mod scene;
+mod scene_tree;
 mod view;
 
 pub use capture::{Capture, CaptureStage};
 pub use composite::Composite;
 pub use direct_view::DirectView;
-pub use fallback::EnvironmentFallback;
+pub use fallback::{FallbackStage, Filling};
 pub use footprint::Footprint;
 pub use record::{RecordMode, ReflectionRecord};
 pub use scene::GpuScene;
+pub use scene_tree::{SceneTree, TreeLayout, TreeUpdate};
 pub use view::{CameraUniform, View};

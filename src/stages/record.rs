@@ -9,6 +9,8 @@ use crate::error::Result;
 use crate::gpu::{Buffer, Device, Format, Frame, Image, Load, Pass, Shape};
 use crate::scene::{self, Ids};
 
+use super::FallbackStage;
+
 /// What is written into the record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordMode {
@@ -38,8 +40,8 @@ impl RecordMode {
     }
 }
 
-/// Counters a method may have.
-const COUNTERS: usize = 16;
+/// Counters a method may have, and those of the fallback after them.
+const COUNTERS: usize = FallbackStage::FIRST_COUNTER + FallbackStage::COUNTERS.len();
 
 /// The images a method fills, see [`scene::ReflectionRecord`].
 pub struct ReflectionRecord {

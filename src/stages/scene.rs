@@ -30,7 +30,7 @@ pub struct ObjectEntry {
     material: u32,
     rank: u32,
     selected: u32,
-    pad: u32,
+    first_index: u32,
 }
 
 /// WGSL `Material`.
@@ -45,7 +45,7 @@ pub struct MaterialEntry {
     reflectance: f32,
     size: [f32; 2],
     image: u32,
-    pad: u32,
+    index: f32,
 }
 
 /// WGSL `ImageInfo`.
@@ -158,7 +158,7 @@ impl GpuScene {
                     material: self.scene.objects[index].material as u32,
                     rank,
                     selected: u32::from(selected.contains(&id)),
-                    pad: 0,
+                    first_index: self.ranges[index].0,
                 };
                 rank += u32::from(self.scene.is_reflector(id));
                 entry
@@ -179,11 +179,18 @@ impl GpuScene {
             .buffer("texels", &self.texels)
             .optional()
             .uniform("light", &self.light)
+            .optional()
+            .buffer("indices", &self.indices)
             .optional();
         match self.objects {
             Some(objects) => pass.slice("objects", objects).optional(),
             None => pass,
         }
+    }
+
+    /// Shader definitions of passes that follow light through the scene.
+    pub fn defines(&self) -> Vec<(&'static str, u32)> {
+        if self.scene.refracts() { vec![("GLASS", 1)] } else { Vec::new() }
     }
 
     /// Draw the objects a filter lets through; the instance index is the object id.
@@ -211,7 +218,7 @@ fn rows(pose: &Affine3A) -> [[f32; 4]; 3] {
 
 /// `pattern` is one of the shader's `PATTERN_` numbers.
 fn material_entry(material: &Material) -> MaterialEntry {
-    let mut entry = MaterialEntry { size: [1.0; 2], ..Default::default() };
+    let mut entry = MaterialEntry { size: [1.0; 2], reflectance: -1.0, ..Default::default() };
     match material.pattern {
         Pattern::Colour(colour) => entry.first = colour.to_array(),
         Pattern::Checker { even, odd, size } => {
@@ -236,6 +243,10 @@ fn material_entry(material: &Material) -> MaterialEntry {
     if let Some(mirror) = material.mirror {
         entry.tint = mirror.tint.to_array();
         entry.reflectance = mirror.reflectance;
+    }
+    if let Some(glass) = material.glass {
+        entry.tint = glass.tint.to_array();
+        entry.index = glass.index;
     }
     entry
 }
@@ -293,9 +304,9 @@ mod tests {
     fn structs_are_laid_out_as_their_wgsl_twins() {
         assert_layout!("stages/direct_view.wgsl", "Vertex", Vertex, position, u, normal, v);
         assert_layout!("stages/direct_view.wgsl", "Object", ObjectEntry,
-            row_x, row_y, row_z, material, rank, selected, pad);
+            row_x, row_y, row_z, material, rank, selected, first_index);
         assert_layout!("stages/direct_view.wgsl", "Material", MaterialEntry,
-            first, pattern, second, line, tint, reflectance, size, image, pad);
+            first, pattern, second, line, tint, reflectance, size, image, index);
         assert_layout!("stages/direct_view.wgsl", "ImageInfo", ImageEntry,
             offset, width, height, pad);
         assert_layout!("stages/background.wgsl", "Light", LightUniform,

@@ -7,7 +7,7 @@ use super::{DirectView, Footprint};
 use crate::error::Result;
 use crate::geometry::{Camera, Projection};
 use crate::gpu::{Frame, Pass};
-use crate::scene::ObjectId;
+use crate::scene::{Lobe, ObjectId};
 
 /// WGSL `Camera` of `shaders/common/camera.wgsl`.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -61,6 +61,8 @@ pub struct View<'a> {
     pub footprint: &'a Footprint,
     /// The reflectors the method is asked for; it writes their pixels only.
     pub reflectors: &'a [ObjectId],
+    /// The lobe of theirs that the record is for.
+    pub lobe: Lobe,
     /// The last call was not for the frame before this one: what was learnt from it is void.
     pub cut: bool,
 }
@@ -82,16 +84,20 @@ impl<'a> View<'a> {
             .optional()
             .buffer("pixels", &footprint.pixels)
             .optional()
+            .uniform("lobe", &(self.lobe as u32))
+            .optional()
     }
 
-    /// Make the footprint's pixel list that of these reflectors.
+    /// Make the footprint's pixel list that of these reflectors, as far as they are asked for.
     pub fn list_pixels(
         &self,
         frame: &mut Frame,
         scene: &super::GpuScene,
         reflectors: &[ObjectId],
     ) -> Result<()> {
-        self.footprint.list_pixels(frame, scene, reflectors)
+        let asked = reflectors.iter().filter(|object| self.reflectors.contains(object));
+        let asked: Vec<_> = asked.copied().collect();
+        self.footprint.list_pixels(frame, scene, &asked)
     }
 }
 

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::scene::{FrameRecord, Ids, ReflectionRecord};
 
 /// Raised whenever the tracer, the shading or the file's layout changes what a frame holds.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 const MAGIC: [u8; 8] = *b"mbtruth\n";
 
@@ -85,10 +85,12 @@ fn encode(frame: &FrameRecord) -> Vec<u8> {
     let mask = frame.reflector_pixels();
     append(&mut bytes, &frame.position, &mask);
     append(&mut bytes, &frame.normal, &mask);
-    append(&mut bytes, &frame.record.radiance, &mask);
-    append(&mut bytes, &frame.record.point, &mask);
-    append(&mut bytes, &frame.record.last, &mask);
-    append(&mut bytes, &frame.record.ids, &mask);
+    for record in [Some(&frame.record), frame.refracted.as_ref()].into_iter().flatten() {
+        append(&mut bytes, &record.radiance, &mask);
+        append(&mut bytes, &record.point, &mask);
+        append(&mut bytes, &record.last, &mask);
+        append(&mut bytes, &record.ids, &mask);
+    }
     let checksum = blake3::hash(&bytes);
     bytes.extend_from_slice(checksum.as_bytes());
     bytes
@@ -119,11 +121,12 @@ fn decode(bytes: &[u8], size: [u32; 2]) -> Option<FrameRecord> {
     let mask = frame.reflector_pixels();
     body.scatter::<Vec3>(&mut frame.position, &mask)?;
     body.scatter::<Vec3>(&mut frame.normal, &mask)?;
-    let ReflectionRecord { radiance, point, last, ids } = &mut frame.record;
-    body.scatter::<Vec3>(radiance, &mask)?;
-    body.scatter::<Vec4>(point, &mask)?;
-    body.scatter::<Vec4>(last, &mask)?;
-    body.scatter::<Ids>(ids, &mask)?;
+    body.record(&mut frame.record, &mask)?;
+    if !body.0.is_empty() {
+        let mut refracted = ReflectionRecord::missing(pixels);
+        body.record(&mut refracted, &mask)?;
+        frame.refracted = Some(refracted);
+    }
     body.0.is_empty().then_some(frame)
 }
 
@@ -135,6 +138,14 @@ impl Reader<'_> {
         self.0 = rest;
         // The bytes of a file need not be aligned.
         Some(bytemuck::pod_collect_to_vec(head))
+    }
+
+    fn record(&mut self, record: &mut ReflectionRecord, mask: &[usize]) -> Option<()> {
+        let ReflectionRecord { radiance, point, last, ids } = record;
+        self.scatter::<Vec3>(radiance, mask)?;
+        self.scatter::<Vec4>(point, mask)?;
+        self.scatter::<Vec4>(last, mask)?;
+        self.scatter::<Ids>(ids, mask)
     }
 
     fn scatter<T: bytemuck::Pod>(&mut self, image: &mut [T], mask: &[usize]) -> Option<()> {

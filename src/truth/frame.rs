@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::{Chain, Tracer};
 use crate::geometry::Ray;
-use crate::scene::{FrameRecord, Ids, NO_OBJECT, ObjectId, shading};
+use crate::scene::{FrameRecord, Ids, Lobe, NO_OBJECT, ObjectId, ReflectionRecord, shading};
 
 /// Pixels of a tile's side: small enough to balance the load, large enough to stay in the caches.
 const TILE: u32 = 16;
@@ -18,10 +18,37 @@ struct Pixel {
     reflector: ObjectId,
     position: Vec3,
     normal: Vec3,
+    reflected: Answer,
+    refracted: Answer,
+}
+
+/// One pixel of a [`ReflectionRecord`].
+struct Answer {
     radiance: Vec3,
     point: Vec4,
     last: Vec4,
     ids: Ids,
+}
+
+impl Answer {
+    const MISSING: Answer =
+        Answer { radiance: Vec3::ZERO, point: Vec4::ZERO, last: Vec4::ZERO, ids: Ids::MISSING };
+
+    fn of(chain: &Chain) -> Self {
+        Answer {
+            radiance: chain.radiance,
+            point: chain.point(),
+            last: chain.last().hit.point.extend(chain.path),
+            ids: chain.ids(),
+        }
+    }
+
+    fn store(self, record: &mut ReflectionRecord, index: usize) {
+        record.radiance[index] = self.radiance;
+        record.point[index] = self.point;
+        record.last[index] = self.last;
+        record.ids[index] = self.ids;
+    }
 }
 
 impl Pixel {
@@ -32,10 +59,8 @@ impl Pixel {
         reflector: NO_OBJECT,
         position: Vec3::ZERO,
         normal: Vec3::ZERO,
-        radiance: Vec3::ZERO,
-        point: Vec4::ZERO,
-        last: Vec4::ZERO,
-        ids: Ids::MISSING,
+        reflected: Answer::MISSING,
+        refracted: Answer::MISSING,
     };
 }
 
@@ -53,6 +78,9 @@ impl Tracer<'_> {
             })
             .collect();
         let mut frame = FrameRecord::new(size);
+        if self.scene.refracts() {
+            frame.refracted = Some(ReflectionRecord::missing(frame.reflector.len()));
+        }
         for (corner, tile) in traced {
             let end = (corner + TILE).min(size.into());
             for (at, pixel) in pixels(corner, end).zip(tile) {
@@ -68,10 +96,12 @@ impl Tracer<'_> {
         let mut pixel = self.centre(&ray);
         let side = f64::from(self.options.spp).sqrt().ceil() as u32;
         if side > 1 {
-            let strata = pixels(UVec2::ZERO, UVec2::splat(side));
+            let strata = pixels(UVec2::ZERO, UVec2::splat(side)).zip(0..);
             let sum: Vec3 = strata
-                .map(|cell| at.as_vec2() + (cell.as_vec2() + 0.5) / side as f32)
-                .map(|position| self.colour(size, position))
+                .map(|(cell, index)| {
+                    let within = cell.as_vec2() + jitter(at, index);
+                    self.colour(size, at.as_vec2() + within / side as f32)
+                })
                 .sum();
             pixel.colour = sum / (side * side) as f32;
         }
@@ -81,7 +111,7 @@ impl Tracer<'_> {
     fn colour(&self, size: [u32; 2], position: Vec2) -> Vec3 {
         let ray = self.moment.camera.ray(size, position);
         match self.look(&ray) {
-            Some(hit) => self.leaving(&hit, ray.direction, self.bounces()),
+            Some(hit) => self.leaving(&hit, ray.direction, self.bounces(), Vec3::ONE),
             None => shading::environment(self.scene, ray.direction),
         }
     }
@@ -99,26 +129,40 @@ impl Tracer<'_> {
             object: hit.object,
             ..Pixel::BACKGROUND
         };
-        if self.mirror(&hit).is_none() {
+        if !self.scene.is_reflector(hit.object) {
             return seen;
         }
-        let chain = self.chain(hit, ray.direction);
+        let [reflected, refracted] = [Lobe::Reflected, Lobe::Refracted].map(|lobe| {
+            let chain = self.chain(hit, ray.direction, lobe);
+            chain.map_or(Answer::MISSING, |chain| Answer::of(&chain))
+        });
         Pixel {
-            colour: self.composite(&hit, chain.radiance),
+            colour: self.composite(&hit, ray.direction, |lobe| match lobe {
+                Lobe::Reflected => reflected.radiance,
+                Lobe::Refracted => refracted.radiance,
+            }),
             reflector: hit.object,
             position: hit.point,
             normal: hit.normal,
-            radiance: chain.radiance,
-            point: chain.point(),
-            last: last(&chain),
-            ids: chain.ids(),
+            reflected,
+            refracted,
             ..seen
         }
     }
 }
 
-fn last(chain: &Chain) -> Vec4 {
-    chain.last().hit.point.extend(chain.path)
+/// A place in the unit square for a sample of a pixel, the same in every run. The integer hash is
+/// Wellons's lowbias32 (2018).
+fn jitter(pixel: UVec2, sample: u32) -> Vec2 {
+    let hash = |mut x: u32| {
+        x = (x ^ x >> 16).wrapping_mul(0x7feb_352d);
+        x = (x ^ x >> 15).wrapping_mul(0x846c_a68b);
+        x ^ x >> 16
+    };
+    let seed = hash(pixel.x ^ hash(pixel.y ^ hash(sample)));
+    // 24 bits fill a float below one.
+    let unit = |bits: u32| (bits >> 8) as f32 / (1u32 << 24) as f32;
+    Vec2::new(unit(seed), unit(hash(seed ^ 1)))
 }
 
 /// Row-major positions from `corner` to before `end`.
@@ -133,8 +177,8 @@ fn store(frame: &mut FrameRecord, index: usize, pixel: Pixel) {
     frame.reflector[index] = pixel.reflector;
     frame.position[index] = pixel.position;
     frame.normal[index] = pixel.normal;
-    frame.record.radiance[index] = pixel.radiance;
-    frame.record.point[index] = pixel.point;
-    frame.record.last[index] = pixel.last;
-    frame.record.ids[index] = pixel.ids;
+    pixel.reflected.store(&mut frame.record, index);
+    if let Some(record) = &mut frame.refracted {
+        pixel.refracted.store(record, index);
+    }
 }

@@ -30,8 +30,9 @@ pub enum Spheres {
 /// What a truth is traced with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TruthOptions {
-    /// Rays a pixel for the picture, on a regular grid within the pixel; rounded up to a square.
-    /// The record is always that of the pixel's centre.
+    /// Rays a pixel for the picture, stratified: one at a random place of each cell of a grid
+    /// within the pixel, their number rounded up to a square; a single one goes through the pixel's
+    /// centre. The record is always that of the centre.
     pub spp: u32,
     /// Longest chain of mirrors; `None` for the scene's own.
     pub bounces: Option<u32>,
@@ -91,11 +92,11 @@ impl<'s> Tracer<'s> {
         self.surfaces.nearest(eye_ray, [camera.near * stretch, camera.far * stretch], None)
     }
 
-    /// The surface met when leaving `from` towards `direction` (unit length), by the rule of
-    /// [`Hit`] for a mirrored ray and its own object.
-    pub fn leave(&self, from: &Hit, direction: glam::Vec3) -> Option<Hit> {
-        let ray = Ray { origin: from.point, direction };
-        self.surfaces.nearest(&ray, [0.0, f32::INFINITY], Some(from))
+    /// The surface met by the ray that leaves a bounce, by the rule of [`Hit`] for a ray and the
+    /// object it starts on.
+    pub fn leave(&self, bounce: &Bounce) -> Option<Hit> {
+        let ray = Ray { origin: bounce.hit.point, direction: bounce.outgoing };
+        self.surfaces.nearest(&ray, [0.0, f32::INFINITY], Some(bounce))
     }
 
     /// What lies at `point` of one triangle of an object, as seen by a ray travelling along

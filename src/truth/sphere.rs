@@ -4,7 +4,6 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{Affine3A, DVec3, Vec2, Vec3};
 
-use super::Hit;
 use crate::geometry::Ray;
 
 /// A sphere about the origin of `pose`.
@@ -33,17 +32,17 @@ impl Sphere {
     }
 
     /// The nearest point of the sphere along `ray` within `range`, and whether it is met from
-    /// outside. A ray that leaves this very sphere `from` outside never meets it again; one that
-    /// leaves it from inside meets it once more, at the other end of the chord.
-    pub fn nearest(&self, ray: &Ray, range: [f32; 2], from: Option<&Hit>) -> Option<(Vec3, bool)> {
+    /// outside. A ray that starts on this very sphere and travels outside (`own` is true) never
+    /// meets it again; one that travels inside meets it once more, at the other end of the chord.
+    pub fn nearest(&self, ray: &Ray, range: [f32; 2], own: Option<bool>) -> Option<(Vec3, bool)> {
         // Doubles: the points feed closed forms whose digits are compared.
         let origin = (ray.origin - self.centre()).as_dvec3();
         let direction = ray.direction.as_dvec3().normalize();
         let [near, far] = roots(origin, direction, f64::from(self.radius))?;
         let within = |t: f64| t >= f64::from(range[0]) && t <= f64::from(range[1]);
-        let (t, front) = match from {
-            Some(from) if from.front => return None,
-            Some(_) => (within(far).then_some(far)?, false),
+        let (t, front) = match own {
+            Some(true) => return None,
+            Some(false) => (within(far).then_some(far)?, false),
             None if within(near) => (near, true),
             None => (within(far).then_some(far)?, false),
         };

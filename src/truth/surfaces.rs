@@ -2,8 +2,8 @@
 
 use glam::{Affine3A, Vec2, Vec3};
 
-use super::Spheres;
 use super::sphere::Sphere;
+use super::{Bounce, Spheres};
 use crate::geometry::Ray;
 use crate::geometry::bvh::Bvh;
 use crate::geometry::optics::face_forward;
@@ -11,11 +11,11 @@ use crate::scene::{Moment, ObjectId, Scene, Surface};
 
 /// A point of a surface, met by a ray.
 ///
-/// A mirrored ray that starts here never meets the triangle it starts on, and meets its own object
-/// only by faces it can come to from outside: having left a front side it ignores back faces of the
-/// object, having left a back side front faces. So a grazing ray, which an interpolated normal may
-/// send slightly below the triangles, does not get caught in a closed mirror, and a concave mirror
-/// still sees itself. For convex closed mirrors the rule is exact.
+/// A ray that starts here never meets the triangle it starts on, and meets its own object only by
+/// faces it can come to: outside it ignores back faces of the object, inside front faces. It is
+/// outside when mirrored off a front side or refracted through a back side. So a grazing ray, which
+/// an interpolated normal may send slightly below the triangles, does not get caught in a closed
+/// mirror, and a concave mirror still sees itself. For convex closed shapes the rule is exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     pub object: ObjectId,
@@ -69,14 +69,12 @@ impl<'s> Surfaces<'s> {
         Surfaces { scene, poses, bvh: Bvh::new(&triangles), owners, shapes }
     }
 
-    /// The nearest surface along `ray` within `range` metres; `from` is the point a mirrored ray
-    /// starts at.
-    pub fn nearest(&self, ray: &Ray, range: [f32; 2], from: Option<&Hit>) -> Option<Hit> {
+    /// The nearest surface along `ray` within `range` metres; `from` is where the ray leaves a
+    /// surface, if it does.
+    pub fn nearest(&self, ray: &Ray, range: [f32; 2], from: Option<&Bounce>) -> Option<Hit> {
         let accept = |index: u32, front: bool| {
             let (object, triangle) = self.owners[index as usize];
-            from.is_none_or(|from| {
-                object != from.object || (triangle != from.triangle && front == from.front)
-            })
+            from.is_none_or(|from| may_meet(from, object, triangle, front))
         };
         let mut found = self.bvh.nearest(ray, range, accept).map(|hit| {
             let (object, triangle) = self.owners[hit.triangle as usize];
@@ -85,12 +83,27 @@ impl<'s> Surfaces<'s> {
         });
         for shape in &self.shapes {
             let end = found.map_or(range[1], |hit| hit.distance);
-            let own = from.filter(|from| from.object == shape.object);
+            let own = from.filter(|from| from.hit.object == shape.object).map(Bounce::outside);
             if let Some((point, front)) = shape.sphere.nearest(ray, [range[0], end], own) {
                 found = Some(self.met(shape.at(point), ray, front));
             }
         }
         found
+    }
+
+    /// Whether anything for which `blocks` is met by the ray that leaves a bounce.
+    pub fn is_blocked(&self, from: &Bounce, blocks: impl Fn(ObjectId) -> bool) -> bool {
+        let ray = Ray { origin: from.hit.point, direction: from.outgoing };
+        let range = [0.0, f32::INFINITY];
+        let accept = |index: u32, front: bool| {
+            let (object, triangle) = self.owners[index as usize];
+            blocks(object) && may_meet(from, object, triangle, front)
+        };
+        let by_shape = |shape: &Shape| {
+            let own = (from.hit.object == shape.object).then(|| from.outside());
+            blocks(shape.object) && shape.sphere.nearest(&ray, range, own).is_some()
+        };
+        self.bvh.nearest(&ray, range, accept).is_some() || self.shapes.iter().any(by_shape)
     }
 
     /// See [`super::Tracer::surface_at`].
@@ -142,6 +155,11 @@ impl<'s> Surfaces<'s> {
         let distance = (point - ray.origin).dot(ray.direction);
         Hit { object, triangle, point, normal, uv, front, distance }
     }
+}
+
+/// The rule of [`Hit`] for rays that leave a surface.
+fn may_meet(from: &Bounce, object: ObjectId, triangle: u32, front: bool) -> bool {
+    object != from.hit.object || triangle != from.hit.triangle && front == from.outside()
 }
 
 /// A [`Hit`] before it is known from where it is seen.

@@ -16,7 +16,7 @@ use super::source::Source;
 use super::values::{Positive, Triple, colour, triple};
 use crate::error::Result;
 use crate::scene::{
-    Environment, Image, Lighting, Material, Mirror, Motion, Object, Pattern, Scene, Surface,
+    Environment, Glass, Image, Lighting, Material, Mirror, Motion, Object, Pattern, Scene, Surface,
 };
 
 /// Everything gathered so far.
@@ -53,7 +53,9 @@ pub fn build(name: String, source: Source, file: SceneFile) -> Result<Scene> {
     };
     let lighting = match file.lighting {
         Some(lighting) => builder.lighting(&lighting)?,
-        None => Lighting { ambient: Vec3::ONE, towards_sun: Vec3::Y, sun: Vec3::ZERO },
+        None => {
+            Lighting { ambient: Vec3::ONE, towards_sun: Vec3::Y, sun: Vec3::ZERO, shadows: false }
+        }
     };
     let environment = builder.environment(file.environment.get_ref())?;
     for (name, material) in &file.materials {
@@ -89,7 +91,12 @@ impl Builder {
             let message = "towards_sun has no direction; valid: a vector that is not zero";
             return Err(self.source.error(&file.span(), message));
         };
-        Ok(Lighting { ambient: colour(lighting.ambient), towards_sun, sun: colour(lighting.sun) })
+        Ok(Lighting {
+            ambient: colour(lighting.ambient),
+            towards_sun,
+            sun: colour(lighting.sun),
+            shadows: lighting.shadows,
+        })
     }
 
     fn environment(&mut self, file: &EnvironmentFile) -> Result<Environment> {
@@ -114,24 +121,26 @@ impl Builder {
     }
 
     fn material(&mut self, name: &str, file: &Spanned<MaterialFile>) -> Result<Material> {
-        let mirror = file
-            .get_ref()
-            .mirror
-            .as_ref()
+        let keys = file.get_ref();
+        let mirror = keys.mirror.as_ref();
+        let mirror = mirror
             .map(|mirror| Mirror { reflectance: mirror.reflectance.0, tint: colour(mirror.tint) });
-        let mut patterns = self.patterns(file.get_ref())?;
-        let pattern = match (patterns.pop(), mirror) {
-            (Some(pattern), _) if patterns.is_empty() => pattern,
-            (None, Some(_)) => Pattern::Colour(Vec3::ZERO),
+        let glass = keys.glass.as_ref();
+        let glass = glass.map(|glass| Glass { index: glass.index.0, tint: colour(glass.tint) });
+        let mut patterns = self.patterns(keys)?;
+        let pattern = match (patterns.pop(), mirror, glass) {
+            (Some(pattern), _, None) if patterns.is_empty() => pattern,
+            (None, Some(_), None) | (None, None, Some(_)) => Pattern::Colour(Vec3::ZERO),
             _ => {
                 let message = format!(
                     "material `{name}` needs one look; \
-                     valid: one of colour, checker, grid, image, or mirror alone"
+                     valid: one of colour, checker, grid, image, with a mirror or without, \
+                     mirror alone, or glass alone"
                 );
                 return Err(self.source.error(&file.span(), message));
             }
         };
-        Ok(Material { name: name.to_owned(), pattern, mirror })
+        Ok(Material { name: name.to_owned(), pattern, mirror, glass })
     }
 
     /// The diffuse looks a material names.
@@ -260,7 +269,7 @@ impl Builder {
             Some(index) => index,
             None => {
                 let pattern = Pattern::Colour(colour);
-                self.materials.push(Material { name, pattern, mirror: None });
+                self.materials.push(Material { name, pattern, mirror: None, glass: None });
                 self.materials.len() - 1
             }
         }

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::values::{
-    Cap, Colour, Crease, Finite, NotNegative, Opening, Positive, Share, Triple, Turn, Whole,
+    Cap, Colour, Crease, Finite, Index, NotNegative, Opening, Positive, Share, Triple, Turn, Whole,
 };
 
 /// A range of bytes in the scene file, for error messages.
@@ -61,6 +61,8 @@ pub struct LightingFile {
     pub ambient: Colour,
     pub sun: Colour,
     pub towards_sun: Triple,
+    #[serde(default)]
+    pub shadows: bool,
 }
 
 #[derive(Deserialize)]
@@ -128,6 +130,7 @@ pub struct MaterialFile {
     pub grid: Option<GridFile>,
     pub image: Option<ImageFile>,
     pub mirror: Option<MirrorFile>,
+    pub glass: Option<GlassFile>,
 }
 
 #[derive(Deserialize)]
@@ -158,6 +161,14 @@ pub struct ImageFile {
 #[serde(deny_unknown_fields)]
 pub struct MirrorFile {
     pub reflectance: Share,
+    #[serde(default = "white")]
+    pub tint: Colour,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GlassFile {
+    pub index: Index,
     #[serde(default = "white")]
     pub tint: Colour,
 }

@@ -36,6 +36,10 @@ number!(Positive, "1e-6 to 1e6", |v| (1e-6..=1e6).contains(&v));
 number!(NotNegative, "0 or more", |v| v >= 0.0);
 number!(Share, "0 to 1", |v| (0.0..=1.0).contains(&v));
 number!(
+    /// A refractive index against the outside's.
+    Index, "0.2 to 5", |v| (0.2..=5.0).contains(&v)
+);
+number!(
     /// An opening angle in degrees.
     Opening, "1 to 170", |v| (1.0..=170.0).contains(&v)
 );
