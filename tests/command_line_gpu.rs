@@ -175,7 +175,7 @@ fn what_does_not_fit_is_refused() {
             2,
             &["cube", "it has: sphere"],
         ),
-        (&["--scene", "sky", "--case", "none", "--fallback", "ray"], 2, &["none, environment"]),
+        (&["--scene", "sky", "--case", "none", "--fallback", "rays"], 2, &["environment, ray"]),
         (&["--scene", "sky", "--case", "none", "--device", "99"], 3, &["99", "there are"]),
         (
             &["--scene", "sky", "--case", "none", "--shader-dir", "/nonexistent"],

@@ -126,7 +126,17 @@ fn wrong_lines_are_named_with_what_is_valid() {
         (
             "red = { colour = [1.0, 0.0, 0.0] }",
             "red = {}",
-            "test.toml:15: material `red` needs one look; valid: one of colour, checker, grid, image, or mirror alone",
+            "test.toml:15: material `red` needs one look; valid: one of colour, checker, grid, image, with a mirror or without, mirror alone, or glass alone",
+        ),
+        (
+            "red = { colour = [1.0, 0.0, 0.0] }",
+            "red = { colour = [1.0, 0.0, 0.0], glass = { index = 1.5 } }",
+            "test.toml:15: material `red` needs one look; valid: one of colour, checker, grid, image, with a mirror or without, mirror alone, or glass alone",
+        ),
+        (
+            "red = { colour = [1.0, 0.0, 0.0] }",
+            "red = { glass = { index = 0.0 } }",
+            "test.toml:15: 0 is out of range; valid: 0.2 to 5",
         ),
         (
             "name = \"ball\"",

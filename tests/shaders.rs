@@ -1,4 +1,4 @@
-//! Every shader compiles, with and without evidence, and no GPU is needed to know.
+//! Every shader compiles, with evidence, glass and a tree in parts or without; no GPU is needed.
 
 use mirrorbench::gpu::Shaders;
 
@@ -9,7 +9,8 @@ fn every_shader_compiles() {
     assert!(files.len() > 5, "only {files:?}");
     let mut wrong = Vec::new();
     for file in &files {
-        for defines in [&[][..], &[("RECORD_FULL", 1)]] {
+        let parts = [("TREE_PARTS", 1), ("NODES_OF_PART", 100), ("SLOTS_OF_PART", 50)];
+        for defines in [&[][..], &[("RECORD_FULL", 1)], &[("GLASS", 1)], &parts] {
             if let Err(error) = shaders.check(file, defines) {
                 wrong.push(error.to_string());
             }

@@ -10,7 +10,9 @@ use gpu_support::Session;
 use mirrorbench::geometry::{Camera, Projection, cube, optics};
 use mirrorbench::gpu::{Buffer, ComputePipeline, Frame};
 use mirrorbench::measure::statistics::SplitMix64;
-use mirrorbench::scene::{self, Environment, Image, Material, Pattern, Scene, shading};
+use mirrorbench::scene::{
+    self, Environment, Glass, Image, Lobe, Material, Mirror, Pattern, Scene, shading,
+};
 use mirrorbench::stages::{CameraUniform, GpuScene};
 
 const COUNT: u32 = 10_000;
@@ -176,4 +178,54 @@ fn eye_rays_and_facing_normals() {
             assert!(grazing || out[1].xyz().abs_diff_eq(facing, 1e-5), "{i}: {}", out[1]);
         }
     }
+}
+
+#[test]
+fn departures() {
+    let (session, mut scene) = (Session::open(), scene::load("sky").unwrap());
+    let tint = Vec3::new(1.0, 0.9, 0.7);
+    let material = |mirror: Option<f32>, index: Option<f32>| Material {
+        name: "m".into(),
+        pattern: Pattern::Colour(Vec3::ZERO),
+        mirror: mirror.map(|reflectance| Mirror { reflectance, tint }),
+        glass: index.map(|index| Glass { index, tint }),
+    };
+    scene.materials = vec![
+        material(None, None),
+        material(Some(0.8), None),
+        material(Some(0.0), None),
+        material(None, Some(1.5)),
+        material(None, Some(0.7)),
+    ];
+    let kinds = scene.materials.len();
+    let (incidents, normals) = (directions(5), directions(6));
+    let inputs: Vec<Vec4> = incidents
+        .iter()
+        .zip(&normals)
+        .enumerate()
+        .flat_map(|(i, (incident, normal))| {
+            let faced = optics::face_forward(*normal, *incident);
+            [incident.extend((i % kinds) as f32), faced.extend((i % 2) as f32)]
+        })
+        .collect();
+    let outputs = run(&session, &scene, "departures", &inputs, 4 * COUNT as usize, &camera());
+    let (mut ways, mut at_the_limit) = (0, 0);
+    for (i, (input, out)) in inputs.chunks(2).zip(outputs.chunks(4)).enumerate() {
+        for (lobe, out) in [Lobe::Reflected, Lobe::Refracted].into_iter().zip(out.chunks(2)) {
+            let (incident, normal) = (input[0].xyz(), input[1].xyz());
+            let way = scene.materials[i % kinds].depart(lobe, incident, normal, i % 2 == 1);
+            let agree = match way {
+                None => out[0].w == 0.0,
+                Some(way) => {
+                    ways += 1;
+                    out[0].w == 1.0
+                        && out[0].xyz().abs_diff_eq(way.direction, 1e-4)
+                        && out[1].abs_diff_eq(way.weight.extend(way.share), 1e-4)
+                }
+            };
+            // There either side may be first to say that nothing passes, or a root be steep.
+            at_the_limit += u32::from(!agree);
+        }
+    }
+    assert!(ways > 8000 && at_the_limit <= 5, "{at_the_limit} of {ways} differ");
 }

@@ -1,3 +1,4 @@
+#define TREE_WRITABLE
 // Puts the triangles that move where they are now.
 #import bindings::scene::{indices, objects, vertices, world_position}
 #import bindings::tree_data::{corners_at, set_corner}

@@ -1,3 +1,4 @@
+#define TREE_WRITABLE
 // Fits the boxes of one depth of the tree to what they hold; those below have been.
 #import bindings::tree_data::{Node, corners_at, node_at, set_node}
 

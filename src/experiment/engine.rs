@@ -107,7 +107,8 @@ impl Engine {
     /// Upload the scene, compile the pipelines.
     ///
     /// # Errors
-    /// [`Error::Usage`] where the case does not fit the scene, [`Error::Device`]
+    /// [`Error::Usage`] where the case does not fit the scene, or the scene asks for shadows;
+    /// [`Error::Device`]
     /// where the scene is beyond the device's limits, [`Error::Shader`].
     pub fn new(
         device: &Arc<Device>,
@@ -116,6 +117,13 @@ impl Engine {
         registry: &[&'static MethodInfo],
         options: &RunOptions,
     ) -> Result<Engine> {
+        if scene.lighting.shadows {
+            return Err(Error::Usage(format!(
+                "scene {} asks for shadows, which only the truth casts; \
+                 valid: the case truth, or a scene without",
+                scene.name
+            )));
+        }
         if let Some(folder) = &options.shader_dir {
             device.read_shaders(folder)?;
         }

@@ -55,8 +55,12 @@ const NONE: Key = u64::MAX;
 
 /// The reflectors and the refractions of the first `order` bounces of a chain, `order` at least 1.
 pub(super) fn key(chain: &Chain, order: u32) -> Key {
-    let trace = chain.trace & (u32::MAX >> 32u32.saturating_sub(8 * order));
-    let refractions = chain.refractions() & ((1 << order.min(31)) - 1);
+    packed(chain.trace, chain.refractions(), order)
+}
+
+fn packed(trace: u32, refractions: u32, order: u32) -> Key {
+    let trace = trace & (u32::MAX >> 32u32.saturating_sub(8 * order));
+    let refractions = refractions & ((1 << order.min(31)) - 1);
     Key::from(trace) | Key::from(refractions) << 32
 }
 
@@ -359,7 +363,7 @@ mod tests {
     fn other_chains_and_jumps_of_origin_or_direction_end_a_field() {
         let right = |pixel: UVec2| pixel.x >= 10;
         let split = [
-            field(|pixel, key, _| *key += u32::from(right(pixel))),
+            field(|pixel, key, _| *key += Key::from(right(pixel))),
             field(|pixel, key, _| *key = if right(pixel) { NONE } else { *key }),
             field(|pixel, _, segment| segment.origin.z += f32::from(u8::from(right(pixel)))),
             field(|pixel, _, segment| {
@@ -385,7 +389,7 @@ mod tests {
     #[test]
     fn every_rays_own_target_is_reached_in_its_surroundings() {
         let field = field(|pixel, key, segment| {
-            *key += u32::from(pixel.y > 7);
+            *key += Key::from(pixel.y > 7);
             segment.origin.z += f32::from(u8::from(pixel.x > 15));
         });
         for pixel in pixels().filter(|&pixel| field.is_rim(pixel)) {
@@ -402,9 +406,9 @@ mod tests {
 
     #[test]
     fn a_key_holds_as_many_reflectors_as_asked_for() {
-        assert_eq!(key(0x0403_0201, 1), 0x01);
-        assert_eq!(key(0x0403_0201, 3), 0x03_0201);
-        assert_eq!(key(0x0403_0201, 4), 0x0403_0201);
-        assert_eq!(key(0x0403_0201, 6), 0x0403_0201);
+        assert_eq!(packed(0x0403_0201, 0b10, 1), 0x01);
+        assert_eq!(packed(0x0403_0201, 0b10, 3), 0x2_0003_0201);
+        assert_eq!(packed(0x0403_0201, 0, 4), 0x0403_0201);
+        assert_eq!(packed(0x0403_0201, 0b10_0001, 6), 0x21_0403_0201);
     }
 }

@@ -102,8 +102,7 @@ struct Built {
 
 impl SceneTree {
     pub fn new(device: &Arc<Device>, layout: TreeLayout, update: TreeUpdate) -> Result<Self> {
-        let mut defines = layout.defines();
-        defines.push(("TREE_WRITABLE", 1));
+        let defines = layout.defines();
         Ok(SceneTree {
             place: ComputePipeline::new(device, "scene_tree/place.wgsl", &defines)?,
             refit: ComputePipeline::new(device, "scene_tree/refit.wgsl", &defines)?,

@@ -3,10 +3,11 @@
 
 use glam::{UVec2, Vec2, Vec3};
 use mirrorbench::geometry::Ray;
-use mirrorbench::scene::{self, FrameRecord, Scene};
+use mirrorbench::scene::{self, FrameRecord, Scene, Status};
 use mirrorbench::truth::{Spheres, Tracer, TruthOptions};
 
-/// Sky, light and the materials `mirror` (tinted), `floor` (checker), `red`, `ghost` (a weak mirror).
+/// Sky, light and the materials `mirror` (tinted), `floor` (checker), `red`, `glass` and `ghost` (a
+/// weak mirror).
 const COMMON: &str = r#"
 about = "test"
 frames = 1
@@ -18,6 +19,7 @@ towards_sun = [0.4, 0.8, 0.3]
 gradient = { zenith = [0.2, 0.4, 0.8], horizon = [0.9, 0.9, 0.9], nadir = [0.3, 0.2, 0.2] }
 [materials]
 mirror = { mirror = { reflectance = 0.9, tint = [1.0, 0.9, 0.8] } }
+glass = { glass = { index = 1.5 } }
 ghost = { colour = [0.2, 0.3, 0.1], mirror = { reflectance = 0.25 } }
 floor = { checker = { even = [0.8, 0.7, 0.6], odd = [0.2, 0.2, 0.3], size = [0.25, 0.25] } }
 red = { colour = [0.8, 0.1, 0.1] }
@@ -110,4 +112,10 @@ pub fn eye_ray(tracer: &Tracer, frame: &FrameRecord, pixel: usize) -> Ray {
 /// Distance of a point from a line.
 pub fn off_ray(ray: &Ray, point: Vec3) -> f32 {
     (point - ray.origin).cross(ray.direction).length()
+}
+
+/// The reflector pixels that show a surface.
+pub fn found(frame: &FrameRecord) -> impl Iterator<Item = usize> {
+    let found = |&pixel: &usize| frame.record.ids[pixel].status() == Status::Found;
+    frame.reflector_pixels().into_iter().filter(found)
 }
