@@ -5,7 +5,7 @@ mod truth_support;
 use glam::{Vec3, Vec4Swizzles};
 use mirrorbench::geometry::optics::{fresnel, refract};
 use mirrorbench::scene::{CameraPath, Environment, Lobe, Scene, Status, shading};
-use mirrorbench::truth::{Spheres, Tracer, TruthOptions};
+use mirrorbench::truth::{Shapes, Tracer, TruthOptions};
 use truth_support::{eye_ray, found, scene, tracer};
 
 const SIZE: [u32; 2] = [96, 64];
@@ -39,7 +39,7 @@ fn glass_ball(index: f32) -> Scene {
 #[test]
 fn a_ray_through_a_ball_turns_as_snell_says() {
     let scene = glass_ball(1.5);
-    let tracer = tracer(&scene, Spheres::Analytic);
+    let tracer = tracer(&scene, Shapes::Analytic);
     let frame = tracer.frame(SIZE);
     let (centre, mut through) = (Vec3::new(0.0, 1.05, 0.0), 0);
     for pixel in frame.reflector_pixels() {
@@ -71,11 +71,11 @@ fn a_ray_through_a_ball_turns_as_snell_says() {
 #[test]
 fn glass_as_dense_as_air_is_not_seen() {
     let mut scene = glass_ball(1.0);
-    let seen = tracer(&scene, Spheres::Tessellated).frame(SIZE);
+    let seen = tracer(&scene, Shapes::Tessellated).frame(SIZE);
     let refracted = seen.refracted.as_ref().unwrap();
     let ball = scene.select("ball")[0];
     scene.objects.remove(ball as usize);
-    let bare_tracer = tracer(&scene, Spheres::Tessellated);
+    let bare_tracer = tracer(&scene, Shapes::Tessellated);
     let mut compared = 0;
     for pixel in seen.reflector_pixels() {
         let ray = eye_ray(&bare_tracer, &seen, pixel);
@@ -97,7 +97,7 @@ fn glass_as_dense_as_air_is_not_seen() {
 #[test]
 fn the_picture_is_the_sum_of_both_lobes() {
     let scene = glass_ball(1.5);
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let frame = tracer.frame(SIZE);
     let refracted = frame.refracted.as_ref().unwrap();
     for pixel in frame.reflector_pixels() {
@@ -116,7 +116,7 @@ fn glass_neither_adds_nor_loses_light() {
     scene.objects.remove(scene.select("floor")[0] as usize);
     scene.environment = Environment::Colour(Vec3::ONE);
     scene.bounces = 8;
-    let tracer = tracer(&scene, Spheres::Analytic);
+    let tracer = tracer(&scene, Shapes::Analytic);
     let frame = tracer.frame(SIZE);
     for pixel in frame.reflector_pixels() {
         // In a white world all is white, but for what after 8 bounces is still inside: of the light
@@ -142,7 +142,7 @@ fn beyond_the_critical_angle_everything_is_reflected() {
     let mut camera = scene.camera.at(0.0);
     (camera.eye, camera.target) = (eye, eye + Vec3::Z);
     scene.camera = CameraPath::Keys(vec![(0.0, camera)]);
-    let tracer = tracer(&scene, Spheres::Analytic);
+    let tracer = tracer(&scene, Shapes::Analytic);
     let ray = tracer.moment().camera.ray([1, 1], glam::Vec2::splat(0.5));
     let hit = tracer.look(&ray).unwrap();
     assert!(!hit.front);
@@ -179,9 +179,9 @@ position = [1.0, 0.9, 0.0]
 #[test]
 fn shadows_fall_where_the_sun_is_hidden_and_only_where_asked() {
     let mut scene = scene(SHADY);
-    let lit = tracer(&scene, Spheres::Analytic).frame(SIZE);
+    let lit = tracer(&scene, Shapes::Analytic).frame(SIZE);
     scene.lighting.shadows = true;
-    let tracer = tracer(&scene, Spheres::Analytic);
+    let tracer = tracer(&scene, Shapes::Analytic);
     let shady = tracer.frame(SIZE);
     let floor = scene.select("floor")[0];
     let (mut dark, mut bright) = (0, 0);

@@ -6,7 +6,7 @@ use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use mirrorbench::geometry::alhazen::reflected_point;
 use mirrorbench::measure::{Accuracy, BadShare, Class, Maps, accuracy};
 use mirrorbench::scene::{FrameRecord, Ids, Lobe, NO_OBJECT, Scene, Status};
-use mirrorbench::truth::{Spheres, Tracer};
+use mirrorbench::truth::{Shapes, Tracer};
 use truth_support::{BALL, FLAT, TWO_BALLS, at, eye_ray, scene, tracer};
 
 const SIZE: [u32; 2] = [160, 120];
@@ -43,7 +43,7 @@ fn shifted(truth: &FrameRecord, shift: usize) -> (FrameRecord, Vec<usize>) {
 #[test]
 fn the_truth_against_itself_is_without_error() {
     let scene = scene(TWO_BALLS);
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let truth = tracer.frame(SIZE);
     let (accuracy, maps) = compare(&truth, &truth, &tracer);
     let none = BadShare { half: 0.0, one: 0.0, two: 0.0, four: 0.0 };
@@ -75,7 +75,7 @@ fn the_truth_found_once_more_by_the_search_is_in_its_place() {
     // Triangle ids are off by one, so no answer counts as equal and every root is searched for.
     for text in [BALL, TWO_BALLS] {
         let scene = scene(text);
-        let tracer = tracer(&scene, Spheres::Tessellated);
+        let tracer = tracer(&scene, Shapes::Tessellated);
         let truth = tracer.frame(SIZE);
         let mut tested = truth.clone();
         for ids in &mut tested.record.ids {
@@ -92,9 +92,9 @@ fn the_truth_found_once_more_by_the_search_is_in_its_place() {
 
 #[test]
 fn a_record_shifted_by_k_pixels_measures_k() {
-    for spheres in [Spheres::Tessellated, Spheres::Analytic] {
+    for shapes in [Shapes::Tessellated, Shapes::Analytic] {
         let scene = scene(BALL);
-        let tracer = tracer(&scene, spheres);
+        let tracer = tracer(&scene, shapes);
         let truth = tracer.frame(SIZE);
         for k in [1, 3, 17] {
             let (tested, moved) = shifted(&truth, k);
@@ -113,7 +113,7 @@ fn a_record_shifted_by_k_pixels_measures_k() {
 #[test]
 fn on_chains_of_two_mirrors_the_chain_is_held() {
     let scene = scene(TWO_BALLS);
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let truth = tracer.frame([480, 360]);
     let (tested, mut moved) = shifted(&truth, 2);
     moved.retain(|&pixel| truth.record.ids[pixel].order() == 2);
@@ -127,7 +127,7 @@ fn on_chains_of_two_mirrors_the_chain_is_held() {
 #[test]
 fn displacement_agrees_with_alhazen() {
     let scene = scene(BALL);
-    let tracer = tracer(&scene, Spheres::Analytic);
+    let tracer = tracer(&scene, Shapes::Analytic);
     let truth = tracer.frame(SIZE);
     let camera = tracer.moment().camera;
     let [centre, eye] = [Vec3::Y, camera.eye].map(|point| point.as_dvec3());
@@ -168,7 +168,7 @@ fn displacement_agrees_with_alhazen() {
 #[test]
 fn in_a_flat_mirror_displacement_is_that_of_the_mirror_image() {
     let scene = scene(FLAT);
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let truth = tracer.frame(SIZE);
     let camera = tracer.moment().camera;
     let mut tested = truth.clone();
@@ -194,7 +194,7 @@ fn in_a_flat_mirror_displacement_is_that_of_the_mirror_image() {
 #[test]
 fn a_point_a_metre_off_along_the_ray_is_of_the_wrong_depth() {
     let scene = scene(BALL);
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let truth = tracer.frame(SIZE);
     let mut tested = truth.clone();
     let mut moved = truth.reflector_pixels();
@@ -218,7 +218,7 @@ fn a_point_a_metre_off_along_the_ray_is_of_the_wrong_depth() {
 #[test]
 fn behind_the_ball_a_point_is_unreachable() {
     let scene = scene(BALL);
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let truth = tracer.frame(SIZE);
     let mut tested = truth.clone();
     let eye = tracer.moment().camera.eye;
@@ -265,7 +265,7 @@ fn ball() -> Scene {
 #[test]
 fn every_kind_of_error_is_counted_under_its_name() {
     let scene = ball();
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let truth = tracer.frame(SIZE);
     let mut tested = truth.clone();
     let found = some(&truth, Status::Found, 150);
@@ -314,7 +314,7 @@ fn every_kind_of_error_is_counted_under_its_name() {
 #[test]
 fn giving_up_never_helps() {
     let scene = ball();
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let truth = tracer.frame(SIZE);
     let (answered, _) = shifted(&truth, 3);
     let (before, _) = compare(&truth, &answered, &tracer);
@@ -347,7 +347,7 @@ fn giving_up_never_helps() {
 #[test]
 fn resampling_shows_in_the_picture_and_not_in_the_shading() {
     let scene = ball();
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let truth = tracer.frame(SIZE);
     let mut tested = truth.clone();
     for pixel in truth.reflector_pixels() {
@@ -365,7 +365,7 @@ fn resampling_shows_in_the_picture_and_not_in_the_shading() {
 #[test]
 fn shading_the_truths_own_points_gives_the_truths_colours() {
     let scene = scene(TWO_BALLS);
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let truth = tracer.frame(SIZE);
     let mut tested = truth.clone();
     // Nothing moves by more than the last digits, but nothing is equal to the truth any more.
@@ -381,7 +381,7 @@ fn shading_the_truths_own_points_gives_the_truths_colours() {
 #[test]
 fn directions_are_displaced_too() {
     let scene = ball();
-    let tracer = tracer(&scene, Spheres::Analytic);
+    let tracer = tracer(&scene, Shapes::Analytic);
     let truth = tracer.frame(SIZE);
     let sky = some(&truth, Status::Environment, 200);
     let mut tested = truth.clone();
@@ -406,7 +406,7 @@ fn directions_are_displaced_too() {
 #[test]
 fn the_fields_are_named_as_the_results_promise() {
     let scene = ball();
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let truth = tracer.frame([32, 24]);
     let (accuracy, _) = compare(&truth, &truth, &tracer);
     let json = serde_json::to_value(&accuracy).unwrap();
@@ -425,7 +425,7 @@ fn the_fields_are_named_as_the_results_promise() {
 #[test]
 fn frames_of_different_sizes_are_refused() {
     let scene = ball();
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let error = accuracy(&tracer.frame([16, 12]), &tracer.frame([12, 16]), &tracer).unwrap_err();
     assert_eq!(error.to_string(), "the truth is 16x12 pixels, the other frame 12x16");
 }

@@ -4,7 +4,7 @@ mod truth_support;
 
 use std::fs;
 
-use mirrorbench::truth::{Cache, Spheres, Tracer, TruthOptions};
+use mirrorbench::truth::{Cache, Shapes, Tracer, TruthOptions};
 use truth_support::{BALL, scene, tracer};
 
 const SIZE: [u32; 2] = [40, 24];
@@ -12,7 +12,7 @@ const SIZE: [u32; 2] = [40, 24];
 #[test]
 fn a_kept_frame_comes_back_bit_by_bit() {
     let scene = scene(BALL);
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let folder = tempfile::tempdir().unwrap();
     let cache = Cache::new(folder.path().join("new"));
     let traced = cache.frame(&tracer, SIZE).unwrap();
@@ -28,7 +28,7 @@ fn a_kept_frame_comes_back_bit_by_bit() {
 #[test]
 fn a_damaged_frame_is_traced_again_and_replaced() {
     let scene = scene(BALL);
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let folder = tempfile::tempdir().unwrap();
     let cache = Cache::new(folder.path());
     let traced = cache.frame(&tracer, SIZE).unwrap();
@@ -69,7 +69,7 @@ fn whatever_changes_the_frame_changes_its_file() {
         cache.path(&with(plain), [40, 25]),
         cache.path(&with(TruthOptions { spp: 4, ..plain }), SIZE),
         cache.path(&with(TruthOptions { bounces: Some(1), ..plain }), SIZE),
-        cache.path(&with(TruthOptions { spheres: Spheres::Analytic, ..plain }), SIZE),
+        cache.path(&with(TruthOptions { shapes: Shapes::Analytic, ..plain }), SIZE),
         cache.path(&Tracer::new(&second, &second.at(0), plain), SIZE),
         cache.path(&Tracer::new(&first, &turned, plain), SIZE),
     ];
@@ -81,7 +81,7 @@ fn whatever_changes_the_frame_changes_its_file() {
 #[test]
 fn a_folder_that_cannot_be_written_is_an_error_that_names_it() {
     let scene = scene(BALL);
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "not a folder").unwrap();

@@ -5,8 +5,8 @@ mod truth_support;
 use glam::{Vec3, Vec4Swizzles};
 use mirrorbench::geometry::alhazen::reflected_point;
 use mirrorbench::geometry::optics::reflect;
-use mirrorbench::scene::{FrameRecord, Lobe, NO_OBJECT, Status, shading};
-use mirrorbench::truth::{Spheres, Tracer, TruthOptions};
+use mirrorbench::scene::{FrameRecord, Lobe, NO_OBJECT, Scene, Status, shading};
+use mirrorbench::truth::{Shapes, Tracer, TruthOptions};
 use truth_support::{BALL, FLAT, TWO_BALLS, eye_ray, found, off_ray, scene, tracer};
 
 const SIZE: [u32; 2] = [96, 64];
@@ -17,7 +17,7 @@ const MIRROR: Vec3 = Vec3::new(0.9, 0.9 * 0.9, 0.9 * 0.8);
 #[test]
 fn a_flat_mirror_shows_the_mirrored_ceiling() {
     let scene = scene(FLAT);
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let frame = tracer.frame(SIZE);
     let [mirror, ceiling] = ["mirror", "ceiling"].map(|name| scene.select(name)[0]);
     let mut pixels = 0;
@@ -57,7 +57,7 @@ fn near_an_edge(point: Vec3) -> bool {
 #[test]
 fn an_analytic_sphere_reflects_where_alhazen_says() {
     let scene = scene(BALL);
-    let tracer = tracer(&scene, Spheres::Analytic);
+    let tracer = tracer(&scene, Shapes::Analytic);
     let frame = tracer.frame(SIZE);
     let eye = tracer.moment().camera.eye.as_dvec3();
     let mut pixels = 0;
@@ -74,8 +74,8 @@ fn an_analytic_sphere_reflects_where_alhazen_says() {
 fn the_tessellated_sphere_converges_to_the_analytic_one() {
     let error = |edge: &str| {
         let scene = scene(&BALL.replace("edge = 0.05", &format!("edge = {edge}")));
-        let [meshed, exact] = [Spheres::Tessellated, Spheres::Analytic]
-            .map(|spheres| tracer(&scene, spheres).frame(SIZE));
+        let [meshed, exact] = [Shapes::Tessellated, Shapes::Analytic]
+            .map(|shapes| tracer(&scene, shapes).frame(SIZE));
         let floor = scene.select("floor")[0];
         let shows_floor = |frame: &FrameRecord, pixel: usize| {
             // Far points of the floor differ by metres for the least turn.
@@ -94,13 +94,87 @@ fn the_tessellated_sphere_converges_to_the_analytic_one() {
     assert!(fine < 0.02, "{fine} m");
 }
 
+/// Every curved closed form, turned and moved, cut into so many steps.
+const CURVED: [&str; 5] = [
+    "sphere = { radius = 1.0, slices = STEPS, stacks = STEPS }",
+    "ellipsoid = { radii = [1.3, 0.6, 0.9], slices = STEPS, stacks = STEPS }",
+    "cylinder = { radius = 0.7, height = 1.5, slices = STEPS }",
+    "cylinder = { radius = 0.7, height = 1.5, slices = STEPS, capped = false }",
+    "torus = { ring = 1.0, tube = 0.4, slices = STEPS, stacks = STEPS }",
+];
+
+/// A mirror of that shape before the sky.
+fn mirror(shape: &str) -> Scene {
+    let camera = &BALL[..BALL.find("[[objects]]").unwrap()];
+    scene(&format!(
+        "{camera}[[objects]]\nname = \"it\"\nshape = {{ {shape} }}\nmaterial = \"mirror\"\n\
+         position = [0.2, 0.9, -0.3]\nrotation_deg = [50.0, 30.0, 20.0]\nscale = 1.1"
+    ))
+}
+
+/// Of the pixels where either shows the object: the share where the two disagree on that, on the
+/// side of a crease or on the length of the chain; and the mean angle between the normals of
+/// those that agree and are not seen at a glancing angle, where the mesh may be off by anything.
+fn difference(scene: &Scene) -> (f32, f32) {
+    let tracers = [Shapes::Tessellated, Shapes::Analytic].map(|shapes| tracer(scene, shapes));
+    let [meshed, exact] = [0, 1].map(|index: usize| tracers[index].frame(SIZE));
+    let (mut covered, mut differ, mut angles) = (0, 0, Vec::new());
+    for pixel in 0..exact.reflector.len() {
+        let seen = [&meshed, &exact].map(|frame| frame.reflector[pixel]);
+        if seen == [NO_OBJECT; 2] {
+            continue;
+        }
+        let [a, b] = [&meshed, &exact].map(|frame| frame.record.ids[pixel].order());
+        // As a chord: an arc cosine in singles rounds small angles to nothing.
+        let angle = meshed.normal[pixel].distance(exact.normal[pixel]);
+        covered += 1;
+        if seen[0] != seen[1] || a != b || angle > 0.5 {
+            differ += 1;
+        } else if eye_ray(&tracers[1], &exact, pixel).direction.dot(exact.normal[pixel]) < -0.3 {
+            angles.push(angle);
+        }
+    }
+    assert!(angles.len() > 300, "{} of {covered} pixels", angles.len());
+    (differ as f32 / covered as f32, angles.iter().sum::<f32>() / angles.len() as f32)
+}
+
+#[test]
+fn meshes_converge_to_their_closed_forms() {
+    for shape in CURVED {
+        let [coarse, middle, fine] =
+            ["32", "64", "128"].map(|steps| difference(&mirror(&shape.replace("STEPS", steps))));
+        // Second order in the step, as the distance of a chord from its arc is.
+        for (coarser, finer) in [(coarse, middle), (middle, fine)] {
+            let ratio = coarser.1 / finer.1;
+            assert!((3.6..4.4).contains(&ratio), "{shape}: {ratio} from {coarser:?} to {finer:?}");
+        }
+        assert!(fine.0 < 0.01, "{shape}: {fine:?}");
+    }
+}
+
+#[test]
+fn a_plane_is_its_own_closed_form() {
+    let (differ, angle) = difference(&mirror("plane = { size = [2.0, 1.5] }"));
+    assert!(differ == 0.0 && angle < 1e-6, "{differ} {angle}");
+}
+
+#[test]
+fn what_has_no_closed_form_stays_a_mesh() {
+    for shape in [
+        "box = { size = [1.0, 1.2, 0.8] }",
+        "torus = { ring = 1.0, tube = 0.4, sweep_deg = 300.0 }",
+    ] {
+        assert_eq!(difference(&mirror(shape)), (0.0, 0.0), "{shape}");
+    }
+}
+
 #[test]
 fn a_ball_alone_shows_the_sky() {
     let start = BALL.find("[[objects]]\nname = \"ball\"").unwrap();
     let end = BALL.find("[[objects]]\nname = \"box\"").unwrap();
     let camera = &BALL[..BALL.find("[[objects]]").unwrap()];
     let scene = scene(&format!("{camera}{}", &BALL[start..end]));
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let frame = tracer.frame(SIZE);
     let mut pixels = 0;
     for pixel in 0..frame.reflector.len() {
@@ -171,7 +245,7 @@ fn between_two_mirrors_the_chain_has_the_length_allowed() {
 #[test]
 fn later_mirrors_dim_the_light_and_the_first_does_not() {
     let scene = scene(TWO_BALLS);
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let frame = tracer.frame(SIZE);
     let mut second = 0;
     for pixel in frame.reflector_pixels() {
@@ -193,7 +267,7 @@ fn later_mirrors_dim_the_light_and_the_first_does_not() {
 #[test]
 fn a_weak_mirror_ends_the_chain_but_not_the_light() {
     let scene = scene(&BALL.replace("material = \"red\"", "material = \"ghost\""));
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let frame = tracer.frame(SIZE);
     let ghost = scene.select("box")[0];
     let mut pixels = 0;
@@ -226,14 +300,14 @@ material = "mirror"
 position = [0.0, 1.0, 0.0]
 "#,
     );
-    for spheres in [Spheres::Tessellated, Spheres::Analytic] {
-        let options = TruthOptions { bounces: Some(1), spheres, spp: 1 };
+    for shapes in [Shapes::Tessellated, Shapes::Analytic] {
+        let options = TruthOptions { bounces: Some(1), shapes, spp: 1 };
         let tracer = Tracer::new(&scene, &scene.at(0), options);
         let frame = tracer.frame([32, 32]);
-        assert_eq!(found(&frame).count(), 1024, "{spheres:?}: light leaves the ball");
+        assert_eq!(found(&frame).count(), 1024, "{shapes:?}: light leaves the ball");
         for pixel in found(&frame) {
             let (r, s) = (frame.position[pixel], frame.record.point[pixel].xyz());
-            assert!((r + s).abs_diff_eq(2.0 * Vec3::Y, 3e-3), "{spheres:?}: from {r} to {s}");
+            assert!((r + s).abs_diff_eq(2.0 * Vec3::Y, 3e-3), "{shapes:?}: from {r} to {s}");
         }
     }
 }
@@ -243,11 +317,11 @@ fn the_picture_is_averaged_and_the_record_is_not() {
     let scene = scene(BALL);
     let options = TruthOptions { spp: 16, ..TruthOptions::default() };
     let smooth = Tracer::new(&scene, &scene.at(0), options).frame(SIZE);
-    let sharp = tracer(&scene, Spheres::Tessellated).frame(SIZE);
+    let sharp = tracer(&scene, Shapes::Tessellated).frame(SIZE);
     assert_eq!(smooth.record, sharp.record);
     assert_ne!(smooth.colour, sharp.colour);
     // Against the mean over an image eight times finer, sixteen strata err far less than one ray.
-    let fine = tracer(&scene, Spheres::Tessellated).frame(SIZE.map(|side| 8 * side));
+    let fine = tracer(&scene, Shapes::Tessellated).frame(SIZE.map(|side| 8 * side));
     let mean = |pixel: u32| {
         let (x, y) = (8 * (pixel % SIZE[0]), 8 * (pixel / SIZE[0]));
         let cells = (0..64).map(|k| ((y + k / 8) * fine.size[0] + x + k % 8) as usize);
@@ -264,7 +338,7 @@ fn the_picture_is_averaged_and_the_record_is_not() {
 #[test]
 fn the_frame_does_not_depend_on_the_number_of_threads() {
     let scene = scene(TWO_BALLS);
-    let tracer = tracer(&scene, Spheres::Tessellated);
+    let tracer = tracer(&scene, Shapes::Tessellated);
     let [one, two] = [1, 2].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| tracer.frame(SIZE))

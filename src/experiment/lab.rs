@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::gpu::Device;
 use crate::methods::{Case, MethodInfo, Selected};
 use crate::scene::{FrameRecord, Moment, Scene};
-use crate::truth::{Cache, Spheres, Tracer, TruthOptions};
+use crate::truth::{Cache, Shapes, Tracer, TruthOptions};
 
 /// The method that is the truth itself: traced on the CPU, never on a device.
 pub const TRUTH: &str = "truth";
@@ -160,12 +160,12 @@ impl Artist<'_> {
 fn truth_options(case: &Case) -> Result<Option<TruthOptions>> {
     match case.parts.as_slice() {
         [Selected { method: TRUTH, reflectors, values, .. }] if reflectors == "*" => {
-            let analytic = values.is("spheres", "analytic");
-            let spheres = if analytic { Spheres::Analytic } else { Spheres::Tessellated };
+            let analytic = values.is("shapes", "analytic");
+            let shapes = if analytic { Shapes::Analytic } else { Shapes::Tessellated };
             let (spp, bounces) = (values.u32("spp"), values.u32("bounces"));
             // 0 is the scene's own.
             let bounces = (bounces > 0).then_some(bounces);
-            Ok(Some(TruthOptions { spp, bounces, spheres }))
+            Ok(Some(TruthOptions { spp, bounces, shapes }))
         }
         _ if case.uses(TRUTH) => Err(Error::Usage(format!(
             "case `{}`: the truth cannot be a part of a hybrid; valid: truth alone",

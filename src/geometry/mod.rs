@@ -8,6 +8,7 @@ pub mod camera;
 pub mod cube;
 pub mod mesh;
 pub mod optics;
+pub mod polynomial;
 pub mod shapes;
 pub mod tree;
 

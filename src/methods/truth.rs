@@ -27,11 +27,11 @@ pub const INFO: MethodInfo = MethodInfo {
             doc: "longest chain of mirrors followed; 0 takes the scene's",
         },
         Param {
-            name: "spheres",
+            name: "shapes",
             kind: Kind::Choice(&["tessellated", "analytic"]),
             defaults: &["tessellated"],
             needs: None,
-            doc: "spheres as the GPU draws them, or in closed form",
+            doc: "round shapes and planes as the meshes the GPU draws, or in closed form",
         },
     ],
     limits: "runs on the CPU; its times are not compared",

@@ -12,7 +12,7 @@ pub mod record;
 mod select;
 pub mod shading;
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 
 use crate::geometry::{Camera, Mesh};
 pub use departure::Departure;
@@ -65,10 +65,48 @@ pub struct Object {
     pub motion: Motion,
 }
 
-/// Closed forms in object space, centred at the origin.
+/// Closed forms in object space, centred at the origin, round ones about the y axis. Metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
-    Sphere { radius: f32 },
+    Sphere {
+        radius: f32,
+    },
+    /// Half axes along x, y and z.
+    Ellipsoid {
+        radii: Vec3,
+    },
+    /// `capped`: closed by discs at both ends.
+    Cylinder {
+        radius: f32,
+        height: f32,
+        capped: bool,
+    },
+    /// Lengths along x and z; the front is seen from +y.
+    Rectangle {
+        size: Vec2,
+    },
+    /// A circle of radius `tube` led round a circle of radius `ring`; `tube < ring`.
+    Torus {
+        ring: f32,
+        tube: f32,
+    },
+}
+
+impl Surface {
+    /// The surface enlarged about the origin, as [`Mesh::scaled`] does it.
+    pub fn scaled(self, factor: f32) -> Self {
+        match self {
+            Surface::Sphere { radius } => Surface::Sphere { radius: factor * radius },
+            Surface::Ellipsoid { radii } => Surface::Ellipsoid { radii: factor * radii },
+            Surface::Cylinder { radius, height, capped } => {
+                Surface::Cylinder { radius: factor * radius, height: factor * height, capped }
+            }
+            Surface::Rectangle { size } => Surface::Rectangle { size: factor * size },
+            Surface::Torus { ring, tube } => {
+                Surface::Torus { ring: factor * ring, tube: factor * tube }
+            }
+        }
+    }
 }
 
 /// Where an object is over time. Motions are rigid; sizes are in the mesh.

@@ -7,7 +7,7 @@
 mod cache;
 mod chain;
 mod frame;
-mod sphere;
+mod shape;
 mod surfaces;
 
 pub use cache::Cache;
@@ -20,10 +20,10 @@ use surfaces::Surfaces;
 
 /// How objects with a closed form are intersected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Spheres {
+pub enum Shapes {
     /// As the meshes the GPU draws.
     Tessellated,
-    /// By their closed form; their triangle is 0.
+    /// By their closed form, where they have one ([`crate::scene::Surface`]); their triangle is 0.
     Analytic,
 }
 
@@ -36,12 +36,12 @@ pub struct TruthOptions {
     pub spp: u32,
     /// Longest chain of mirrors; `None` for the scene's own.
     pub bounces: Option<u32>,
-    pub spheres: Spheres,
+    pub shapes: Shapes,
 }
 
 impl Default for TruthOptions {
     fn default() -> Self {
-        TruthOptions { spp: 1, bounces: None, spheres: Spheres::Tessellated }
+        TruthOptions { spp: 1, bounces: None, shapes: Shapes::Tessellated }
     }
 }
 
@@ -62,7 +62,7 @@ impl<'s> Tracer<'s> {
         for (rank, reflector) in scene.reflectors().into_iter().enumerate() {
             ranks[reflector as usize] = rank as u32;
         }
-        let surfaces = Surfaces::new(scene, moment, options.spheres);
+        let surfaces = Surfaces::new(scene, moment, options.shapes);
         Tracer { scene, moment: moment.clone(), options, surfaces, ranks }
     }
 

@@ -2,12 +2,12 @@
 
 use glam::{Affine3A, Vec2, Vec3};
 
-use super::sphere::Sphere;
-use super::{Bounce, Spheres};
+use super::shape::Shape;
+use super::{Bounce, Shapes};
 use crate::geometry::Ray;
 use crate::geometry::bvh::Bvh;
 use crate::geometry::optics::face_forward;
-use crate::scene::{Moment, ObjectId, Scene, Surface};
+use crate::scene::{Moment, ObjectId, Scene};
 
 /// A point of a surface, met by a ray.
 ///
@@ -31,31 +31,25 @@ pub struct Hit {
     pub distance: f32,
 }
 
-/// A closed form standing for an object's mesh.
-struct Shape {
-    object: ObjectId,
-    sphere: Sphere,
-}
-
 pub(super) struct Surfaces<'s> {
     scene: &'s Scene,
     poses: Vec<Affine3A>,
     bvh: Bvh,
     /// Object and triangle of each triangle in the tree.
     owners: Vec<(ObjectId, u32)>,
+    /// Closed forms standing for objects' meshes.
     shapes: Vec<Shape>,
 }
 
 impl<'s> Surfaces<'s> {
-    pub fn new(scene: &'s Scene, moment: &Moment, spheres: Spheres) -> Self {
+    pub fn new(scene: &'s Scene, moment: &Moment, option: Shapes) -> Self {
         let mut triangles = Vec::new();
         let mut owners = Vec::new();
         let mut shapes = Vec::new();
         for (id, object) in scene.objects.iter().enumerate() {
             let (id, pose) = (id as ObjectId, moment.poses[id]);
-            if let (Some(Surface::Sphere { radius }), Spheres::Analytic) = (object.surface, spheres)
-            {
-                shapes.push(Shape { object: id, sphere: Sphere { pose, radius } });
+            if let (Some(surface), Shapes::Analytic) = (object.surface, option) {
+                shapes.push(Shape::new(id, &pose, surface));
                 continue;
             }
             let mesh = scene.mesh_of(id);
@@ -84,8 +78,8 @@ impl<'s> Surfaces<'s> {
         for shape in &self.shapes {
             let end = found.map_or(range[1], |hit| hit.distance);
             let own = from.filter(|from| from.hit.object == shape.object).map(Bounce::outside);
-            if let Some((point, front)) = shape.sphere.nearest(ray, [range[0], end], own) {
-                found = Some(self.met(shape.at(point), ray, front));
+            if let Some((point, front)) = shape.nearest(ray, [range[0], end], own) {
+                found = Some(self.met(SurfacePoint::of_shape(shape, point), ray, front));
             }
         }
         found
@@ -101,7 +95,7 @@ impl<'s> Surfaces<'s> {
         };
         let by_shape = |shape: &Shape| {
             let own = (from.hit.object == shape.object).then(|| from.outside());
-            blocks(shape.object) && shape.sphere.nearest(&ray, range, own).is_some()
+            blocks(shape.object) && shape.nearest(&ray, range, own).is_some()
         };
         self.bvh.nearest(&ray, range, accept).is_some() || self.shapes.iter().any(by_shape)
     }
@@ -110,8 +104,8 @@ impl<'s> Surfaces<'s> {
     pub fn at(&self, object: ObjectId, triangle: u32, point: Vec3, incident: Vec3) -> Option<Hit> {
         let ray = Ray { origin: point, direction: incident };
         if let Some(shape) = self.shapes.iter().find(|shape| shape.object == object) {
-            let outward = shape.sphere.normal(point);
-            return Some(self.met(shape.at(point), &ray, outward.dot(incident) < 0.0));
+            let surface = SurfacePoint::of_shape(shape, point);
+            return Some(self.met(surface, &ray, surface.normal.dot(incident) < 0.0));
         }
         self.scene.objects.get(object as usize)?;
         let mesh = self.scene.mesh_of(object);
@@ -163,6 +157,7 @@ fn may_meet(from: &Bounce, object: ObjectId, triangle: u32, front: bool) -> bool
 }
 
 /// A [`Hit`] before it is known from where it is seen.
+#[derive(Clone, Copy)]
 struct SurfacePoint {
     object: ObjectId,
     triangle: u32,
@@ -171,9 +166,9 @@ struct SurfacePoint {
     uv: Vec2,
 }
 
-impl Shape {
-    fn at(&self, point: Vec3) -> SurfacePoint {
-        let normal = self.sphere.normal(point);
-        SurfacePoint { object: self.object, triangle: 0, point, normal, uv: self.sphere.uv(point) }
+impl SurfacePoint {
+    fn of_shape(shape: &Shape, point: Vec3) -> Self {
+        let (object, normal, uv) = (shape.object, shape.normal(point), shape.uv(point));
+        SurfacePoint { object, triangle: 0, point, normal, uv }
     }
 }

@@ -4,7 +4,7 @@
 use glam::{UVec2, Vec2, Vec3};
 use mirrorbench::geometry::Ray;
 use mirrorbench::scene::{self, FrameRecord, Scene, Status};
-use mirrorbench::truth::{Spheres, Tracer, TruthOptions};
+use mirrorbench::truth::{Shapes, Tracer, TruthOptions};
 
 /// Sky, light and the materials `mirror` (tinted), `floor` (checker), `red`, `glass` and `ghost` (a
 /// weak mirror).
@@ -95,8 +95,8 @@ pub fn scene(text: &str) -> Scene {
     scene::load(path.to_str().unwrap()).unwrap()
 }
 
-pub fn tracer(scene: &Scene, spheres: Spheres) -> Tracer<'_> {
-    Tracer::new(scene, &scene.at(0), TruthOptions { spheres, ..TruthOptions::default() })
+pub fn tracer(scene: &Scene, shapes: Shapes) -> Tracer<'_> {
+    Tracer::new(scene, &scene.at(0), TruthOptions { shapes, ..TruthOptions::default() })
 }
 
 /// Row and column of a pixel.

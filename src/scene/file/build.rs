@@ -226,9 +226,7 @@ impl Builder {
         let mut made = Vec::new();
         for part in parts(&mut self.source, shape, &file.shape.span())? {
             self.meshes.push(part.mesh.scaled(scale));
-            let surface = part
-                .surface
-                .map(|Surface::Sphere { radius }| Surface::Sphere { radius: scale * radius });
+            let surface = part.surface.map(|surface| surface.scaled(scale));
             let mesh = self.meshes.len() - 1;
             made.push(MadePart { name: part.name, mesh, surface, material: part.material });
         }

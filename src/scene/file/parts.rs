@@ -5,8 +5,8 @@ use std::f32::consts::{PI, TAU};
 use glam::{Vec2, Vec3};
 
 use super::format::{
-    CurveKind, CylinderFile, EllipsoidFile, ObjFile, PatchesFile, RevolutionFile, ShapeFile, Span,
-    SphereFile, TorusFile,
+    CurveKind, CylinderFile, EllipsoidFile, ObjFile, PatchesFile, PlaneFile, RevolutionFile,
+    ShapeFile, Span, SphereFile, TorusFile,
 };
 use super::source::Source;
 use super::{obj, patches};
@@ -47,18 +47,19 @@ const MAX_STEPS: u32 = 4096;
 
 /// The parts of a shape; `span` is where it stands in the scene file.
 pub fn parts(source: &mut Source, shape: &ShapeFile, span: &Span) -> Result<Vec<Part>> {
-    let mesh = match shape {
+    let part = match shape {
         ShapeFile::Obj(file) => return obj_parts(source, file),
         ShapeFile::Patches(file) => return patch_parts(source, file),
-        ShapeFile::Sphere(file) => return sphere_part(file, &Steps { source, span }),
-        ShapeFile::Ellipsoid(file) => ellipsoid_mesh(file, &Steps { source, span })?,
-        ShapeFile::Box(file) => cuboid(Vec3::from(file.size.map(|s| s.0))),
-        ShapeFile::Plane(file) => plane(Vec2::from(file.size.map(|s| s.0))),
-        ShapeFile::Cylinder(file) => cylinder_mesh(file, &Steps { source, span })?,
-        ShapeFile::Torus(file) => torus_mesh(file, &Steps { source, span })?,
-        ShapeFile::Revolution(file) => revolution_mesh(file, &Steps { source, span })?,
+        ShapeFile::Sphere(file) => sphere_part(file, &Steps { source, span })?,
+        ShapeFile::Ellipsoid(file) => ellipsoid_part(file, &Steps { source, span })?,
+        // Without curves the mesh is exact.
+        ShapeFile::Box(file) => whole(cuboid(Vec3::from(file.size.map(|s| s.0))), None),
+        ShapeFile::Plane(file) => plane_part(file),
+        ShapeFile::Cylinder(file) => cylinder_part(file, &Steps { source, span })?,
+        ShapeFile::Torus(file) => torus_part(file, &Steps { source, span })?,
+        ShapeFile::Revolution(file) => whole(revolution_mesh(file, &Steps { source, span })?, None),
     };
-    Ok(vec![whole(mesh, None)])
+    Ok(vec![part])
 }
 
 fn whole(mesh: Mesh, surface: Option<Surface>) -> Part {
@@ -102,30 +103,37 @@ impl Steps<'_> {
     }
 }
 
-fn sphere_part(file: &SphereFile, steps: &Steps) -> Result<Vec<Part>> {
+fn sphere_part(file: &SphereFile, steps: &Steps) -> Result<Part> {
     let radius = file.radius.0;
     let edge = file.edge.map(|e| e.0);
     let slices = steps.arc(radius, TAU, edge, file.slices.map(|s| s.0), SLICES)?;
     let stacks = steps.arc(radius, PI, edge, file.stacks.map(|s| s.0), STACKS)?;
-    Ok(vec![whole(sphere(radius, slices, stacks), Some(Surface::Sphere { radius }))])
+    Ok(whole(sphere(radius, slices, stacks), Some(Surface::Sphere { radius })))
 }
 
-fn ellipsoid_mesh(file: &EllipsoidFile, steps: &Steps) -> Result<Mesh> {
+fn ellipsoid_part(file: &EllipsoidFile, steps: &Steps) -> Result<Part> {
     let radii = Vec3::from(file.radii.map(|r| r.0));
     let edge = file.edge.map(|e| e.0);
     let round = radii.x.max(radii.z);
     let slices = steps.arc(round, TAU, edge, file.slices.map(|s| s.0), SLICES)?;
     let stacks = steps.arc(radii.max_element(), PI, edge, file.stacks.map(|s| s.0), STACKS)?;
-    Ok(ellipsoid(radii, slices, stacks))
+    Ok(whole(ellipsoid(radii, slices, stacks), Some(Surface::Ellipsoid { radii })))
 }
 
-fn cylinder_mesh(file: &CylinderFile, steps: &Steps) -> Result<Mesh> {
-    let (radius, edge) = (file.radius.0, file.edge.map(|e| e.0));
+fn plane_part(file: &PlaneFile) -> Part {
+    let size = Vec2::from(file.size.map(|s| s.0));
+    whole(plane(size), Some(Surface::Rectangle { size }))
+}
+
+fn cylinder_part(file: &CylinderFile, steps: &Steps) -> Result<Part> {
+    let (radius, height, capped) = (file.radius.0, file.height.0, file.capped);
+    let edge = file.edge.map(|e| e.0);
     let slices = steps.arc(radius, TAU, edge, file.slices.map(|s| s.0), SLICES)?;
-    Ok(cylinder(radius, file.height.0, file.capped, slices))
+    let surface = Surface::Cylinder { radius, height, capped };
+    Ok(whole(cylinder(radius, height, capped, slices), Some(surface)))
 }
 
-fn torus_mesh(file: &TorusFile, steps: &Steps) -> Result<Mesh> {
+fn torus_part(file: &TorusFile, steps: &Steps) -> Result<Part> {
     let (ring, tube, edge) = (file.ring.0, file.tube.0, file.edge.map(|e| e.0));
     if tube >= ring {
         return Err(
@@ -137,7 +145,8 @@ fn torus_mesh(file: &TorusFile, steps: &Steps) -> Result<Mesh> {
     let angle = if degrees < 360.0 { degrees.to_radians() } else { TAU };
     let slices = steps.arc(ring + tube, angle, edge, file.slices.map(|s| s.0), SLICES)?;
     let stacks = steps.arc(tube, TAU, edge, file.stacks.map(|s| s.0), STACKS)?;
-    Ok(torus(ring, tube, stacks, Sweep { slices, angle }))
+    let surface = (angle == TAU).then_some(Surface::Torus { ring, tube });
+    Ok(whole(torus(ring, tube, stacks, Sweep { slices, angle }), surface))
 }
 
 fn revolution_mesh(file: &RevolutionFile, steps: &Steps) -> Result<Mesh> {
