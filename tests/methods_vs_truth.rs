@@ -14,11 +14,13 @@ const SIZE: [u32; 2] = [128, 96];
 
 /// A case, a scene, and the band its `bad_share` at 1 px lies in. Environment maps of a near scene
 /// are wrong nearly everywhere; what is right shows the environment or the far floor.
-const BANDS: [(&str, &str, [f64; 2]); 5] = [
+const BANDS: [(&str, &str, [f64; 2]); 7] = [
     ("environment-map", "sky", [0.0, 0.0]),
     ("environment-map", "columns", [0.3, 0.75]),
     ("environment-map", "patow-room", [0.8, 1.0]),
     ("environment-map:index=surface", "patow-room", [0.9, 1.0]),
+    ("environment-map", "glass-sphere", [0.95, 1.0]),
+    ("environment-map", "hall-of-mirrors", [0.5, 0.7]),
     ("planar-mirror", "lecture", [0.0, 0.002]),
 ];
 
