@@ -13,7 +13,7 @@ use crate::scene::Moment;
 const BURST_FRAMES: usize = 8;
 /// Bursts of slow frames are shorter, down to a single frame: the sooner the players of a round take
 /// turns, the more of what slows the machine hits all of them.
-const BURST_MS: f64 = 100.0;
+const BURST_MS: f64 = 20.0;
 /// So many bursts in a row must show no trend, or none that matters: the median of their later half
 /// within this share of their earlier half's.
 const STEADY_BURSTS: usize = 8;
@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn slow_frames_come_in_short_bursts() {
-        for (frame_ms, expected) in [(0.01, 8), (25.0, 4), (1e6, 1)] {
+        for (frame_ms, expected) in [(0.01, 8), (5.0, 4), (1e6, 1)] {
             let mut player = fakes(&[frame_ms]).remove(0);
             let length = Runner::new(&mut player).warm_up(&moments(9), &plan(None)).unwrap();
             assert!(length.abs_diff(expected) <= 1, "{frame_ms} ms gave {length}");
