@@ -6,7 +6,7 @@ from pathlib import Path
 
 import jinja2
 
-from . import paths, registry
+from . import paths, registry, text
 from .figure import SOFTWARE_MARK
 from .runs import SCHEMA_VERSION
 
@@ -23,7 +23,7 @@ def write(out: Path, failed: dict[str, str]) -> Path:
         lstrip_blocks=True,
     )
     devices = {json.dumps(d, sort_keys=True): d for f in figures for d in f["devices"]}
-    text = environment.get_template("index.html.jinja").render(
+    html = environment.get_template("index.html.jinja").render(
         papers=_papers(figures, failed),
         commits=sorted({commit for f in figures for commit in f["commit"]}),
         devices=list(devices.values()),
@@ -31,11 +31,12 @@ def write(out: Path, failed: dict[str, str]) -> Path:
         is_software=any(f["is_software"] for f in figures),
         failed=failed,
         rows=_timed_rows(figures),
+        ratio=text.ratio,
         slider_css=(paths.VENDOR / "img-comparison-slider.css").read_text(encoding="utf-8"),
         slider_js=(paths.VENDOR / "img-comparison-slider.min.js").read_text(encoding="utf-8"),
     )
     aside = out / ".index.html.making"
-    aside.write_text(text, encoding="utf-8")
+    aside.write_text(html, encoding="utf-8")
     os.replace(aside, out / "index.html")
     return out / "index.html"
 

@@ -1,4 +1,5 @@
-"""Where things are. MIRRORBENCH_SCENES, MIRRORBENCH_BIN and MIRRORBENCH_FIGURES override."""
+"""Where things are. MIRRORBENCH_SCENES, MIRRORBENCH_BIN, MIRRORBENCH_FIGURES and MIRRORBENCH_RESULTS
+override."""
 
 import os
 from pathlib import Path
@@ -18,3 +19,9 @@ def binary() -> Path:
 def out() -> Path:
     """The folder the figures are written to."""
     return Path(os.environ.get("MIRRORBENCH_FIGURES", FIGURES / "out"))
+
+
+def results() -> Path | None:
+    """A results file to draw benchmarks from instead of running them."""
+    named = os.environ.get("MIRRORBENCH_RESULTS")
+    return Path(named) if named else None

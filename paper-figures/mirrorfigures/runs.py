@@ -70,7 +70,12 @@ def render(scene: str, case: str, *, frame: int = 0, size: str = "1280x720", dum
 
 
 def bench(scene: str, cases: list[str], *, size: str, frames: str, repeat: int) -> Run:
-    """Time and judge cases on a scene; one row a case."""
+    """Time and judge cases on a scene; one row a case.
+
+    MIRRORBENCH_RESULTS names a results file to take the rows from instead: nothing runs then.
+    """
+    if file := paths.results():
+        return _kept(file, scene, cases, size, frames)
     arguments = ["bench", "--scene", scene, "--size", size, "--frames", frames]
     arguments += ["--repeat", str(repeat)]
     for case in cases:
@@ -78,15 +83,32 @@ def bench(scene: str, cases: list[str], *, size: str, frames: str, repeat: int) 
     return _run(arguments)
 
 
+def _kept(file: Path, scene: str, cases: list[str], size: str, frames: str) -> Run:
+    """The file's last row of each case."""
+    begin, end = (int(n) for n in frames.split(".."))
+    wanted = (scene, [int(n) for n in size.split("x")], list(range(begin, end)))
+    rows = {}
+    for row in _rows(file):
+        if row["frame_gpu_ms"] and (row["scene"]["name"], row["size"], row["frames"]) == wanted:
+            rows[row["case"]] = row
+    if missing := [case for case in cases if case not in rows]:
+        raise RunFailed(f"{file} has no times of {scene} at {size}, frames {frames}: {', '.join(missing)}")
+    return Run([rows[case] for case in cases], file.parent)
+
+
+def _rows(file: Path) -> list[dict]:
+    rows = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
+    for row in rows:
+        if row["schema_version"] != SCHEMA_VERSION:
+            raise RunFailed(f"row of schema {row['schema_version']}, these figures read {SCHEMA_VERSION}")
+    return rows
+
+
 def _run(arguments: list[str]) -> Run:
     folder = paths.out() / ".runs" / _key(arguments)
     if not folder.is_dir():
         _make(arguments, folder)
-    rows = [json.loads(line) for line in (folder / "rows.jsonl").read_text().splitlines()]
-    for row in rows:
-        if row["schema_version"] != SCHEMA_VERSION:
-            raise RunFailed(f"row of schema {row['schema_version']}, these figures read {SCHEMA_VERSION}")
-    return Run(rows, folder / "files")
+    return Run(_rows(folder / "rows.jsonl"), folder / "files")
 
 
 def _make(arguments: list[str], folder: Path) -> None:

@@ -14,6 +14,16 @@ def accuracy_lines(row: dict) -> str:
     )
 
 
+def ratio(row: dict) -> str:
+    """What a row's frame costs beside the first of its table, its interval, and what they say."""
+    if not row["ratio"]:
+        return ""
+    frame = row["ratio"]["frame"]
+    low, high = frame["ci95"]
+    said = frame["verdict"].replace("-", " ")
+    return f"{frame['median']:.2f} ({low:.2f}–{high:.2f}), {said}"
+
+
 def verdict(row: dict) -> str:
     """One row's accuracy in words."""
     accuracy = row["accuracy"]

@@ -6,6 +6,7 @@ the dotted line is the same frame without any reflection.
 
 from mirrorfigures import bench, main
 from mirrorfigures.charts import speed_against_accuracy
+from mirrorfigures.text import ratio
 
 MAPS = ["environment-map", "environment-map:index=surface"]
 SCENES = {
@@ -22,7 +23,16 @@ def draw(figure):
         for scene, cases in SCENES.items()
     }
     figure.cite(*runs.values())
+    header = ["scene", "case", "frame, GPU ms", "ratio to the first of the scene", "bad at 1 px"]
+    rows = [cells(row) for run in runs.values() for row in run.rows]
+    figure.table("What a frame costs", header, rows)
     figure.plot = speed_against_accuracy({scene: run.rows for scene, run in runs.items()})
+
+
+def cells(row):
+    bad = 100 * row["accuracy"]["bad_share"]["1"]
+    milliseconds = f"{row['frame_gpu_ms']['median']:.2f}"
+    return [row["scene"]["name"], row["case"], milliseconds, ratio(row) or "1", f"{bad:.1f} %"]
 
 
 if __name__ == "__main__":

@@ -114,7 +114,7 @@ def save(path: Path, layers: dict[str, np.ndarray]) -> None:
     OpenEXR.File(header, layers).write(str(path))
 
 
-def row(scene: str, case: str, size: list[int], frame: int, timed: bool) -> dict:
+def row(scene: str, case: str, size: list[int], frame: int, timed: bool, baseline: str) -> dict:
     names = ["column-{}", "object-{}"][scene == "lecture"]
     objects = [names.format(i + 1) for i in range(FLOOR)] + ["floor", "mirror"]
     scale = {"none": 1.0, "truth": 0.0}.get(case, 1.6 + 0.05 * len(case)) * (2 if timed else 1)
@@ -129,6 +129,8 @@ def row(scene: str, case: str, size: list[int], frame: int, timed: bool) -> dict
     device = {"name": "toy device", "driver": "toy 1.0", "api": "1.3.0", "is_software": True}
     time = {"median": scale, "min": 0.9 * scale, "p95": 1.3 * scale, "n": 20,
             "ci95": [0.95 * scale, 1.06 * scale], "with_prepare": 2 * scale}  # fmt: skip
+    compared = {"median": 1.7, "ci95": [1.6, 1.8], "verdict": "slower"}
+    ratio = {"baseline": baseline, "rounds": 20, "frame": compared, "with_prepare": compared}
     gpu = {"median": scale / 2, "min": scale / 2, "p95": scale / 2}
     steps = ("direct-view/shade", f"{case.split(':')[0]}/lookup")
     return {
@@ -140,11 +142,13 @@ def row(scene: str, case: str, size: list[int], frame: int, timed: bool) -> dict
         "reflector_pixels": 1000.0,
         "prepare": {"calls": 1, "gpu_ms": 3.2, "cpu_ms": 0.1, "bytes": 1 << 20},
         "frame_gpu_ms": time if timed else None,
+        "ratio": ratio if timed and case != baseline else None,
         "passes": [
             {"name": s, "prepare": False, "gpu_ms": gpu, "cpu_ms": 0.0, "invocations": 100} for s in steps
         ],
         "counters": {}, "accuracy": None if case == "truth" else accuracy, "stability": None,
-        "clock": {"before_mhz": None, "after_mhz": None, "throttled": 0, "load": 0.1},
+        "clock": {"before_mhz": None, "after_mhz": None, "throttled": 0, "load": 0.1,
+                  "load_after": 1.2, "steady": True},
     }  # fmt: skip
 
 
@@ -177,7 +181,8 @@ def main() -> int:
             save(args.out / f"frame-{args.frame:04}.exr", draw(case, *size, args.frame))
             if args.dump == "environment-map/capture":
                 save(args.out / "dump" / args.dump / "radiance.exr", cube(128))
-        print(json.dumps(row(args.scene, case, size, args.frame, args.command == "bench")))
+        timed = args.command == "bench"
+        print(json.dumps(row(args.scene, case, size, args.frame, timed, args.case[0])))
     return 0
 
 

@@ -89,6 +89,28 @@ def test_a_failed_figure_fails_the_command_but_not_the_page(fake, monkeypatch, t
     assert not (paths.out() / "patow-1995" / "1.png").exists()
 
 
+def test_charts_are_drawn_again_from_a_results_file_alone(fake, monkeypatch, tmp_path):
+    monkeypatch.delenv("FAKE_MIRRORBENCH_SIZE")
+    assert mirrorfigures("overview/speed-accuracy").returncode == 0
+    first = paths.out() / "overview"
+    rows = [path.read_text() for path in sorted((paths.out() / ".runs").glob("*/rows.jsonl"))]
+    (tmp_path / "results.jsonl").write_text("".join(rows))
+    monkeypatch.setenv("MIRRORBENCH_RESULTS", str(tmp_path / "results.jsonl"))
+    monkeypatch.setenv("MIRRORBENCH_BIN", str(tmp_path / "there is none"))
+    monkeypatch.setenv("MIRRORBENCH_FIGURES", str(tmp_path / "again"))
+    done = mirrorfigures("overview/speed-accuracy")
+    assert done.returncode == 0, done.stderr
+    again = paths.out() / "overview"
+    for suffix in ("png", "pdf", "json"):
+        name = f"speed-accuracy.{suffix}"
+        assert (again / name).read_bytes() == (first / name).read_bytes(), name
+    assert "1.70 (1.60–1.80), slower" in Links((paths.out() / "index.html").read_text()).text
+    (tmp_path / "results.jsonl").write_text("".join(rows[1:]))
+    done = mirrorfigures("overview/speed-accuracy")
+    assert done.returncode == 1
+    assert "has no times of" in done.stderr
+
+
 @pytest.mark.parametrize(("arguments", "code"), [(["--list"], 0), (["nobody/1"], 2)])
 def test_arguments(fake, arguments, code):
     done = mirrorfigures(*arguments)

@@ -8,6 +8,7 @@ use super::console::{Console, table};
 use super::work;
 use crate::error::{Error, Result};
 use crate::experiment::bench::{self, BenchPlan};
+use crate::experiment::comparison::{self, Ratio};
 use crate::experiment::results::Row;
 use crate::experiment::sweep::{Sweep, batches};
 use crate::methods::{Case, MethodInfo};
@@ -104,7 +105,10 @@ fn parsed<T: FromStr<Err = String>>(
 
 fn run(request: &Request, common: &Common, methods: &[&'static MethodInfo]) -> Result<()> {
     let console = Console::new(common.json);
-    let Request { scenes, cases, sizes, .. } = request;
+    let Request { scenes, sizes, .. } = request;
+    let mut cases = request.cases.clone();
+    let baseline = comparison::baseline(&cases);
+    cases[..=baseline].rotate_right(1);
     let counts = [sizes.len(), scenes.len(), cases.len()];
     let shard = request.shard.map_or((1, 1), |shard| (shard.index, shard.count));
     let batches = batches(counts, shard);
@@ -142,8 +146,17 @@ fn run(request: &Request, common: &Common, methods: &[&'static MethodInfo]) -> R
 
 /// One line a row: cost and error.
 fn summary(rows: &[Row]) -> String {
-    let heading =
-        ["SCENE", "CASE", "SIZE", "FRAME MS", "95 %", "PREPARE MS", "BAD 1PX", "MEDIAN PX"];
+    let heading = [
+        "SCENE",
+        "CASE",
+        "SIZE",
+        "FRAME MS",
+        "95 %",
+        "RATIO",
+        "PREPARE MS",
+        "BAD 1PX",
+        "MEDIAN PX",
+    ];
     let mut lines = vec![heading.map(str::to_owned).to_vec()];
     let or_dash = |text: Option<String>| text.unwrap_or_else(|| "-".into());
     for row in rows {
@@ -157,10 +170,20 @@ fn summary(rows: &[Row]) -> String {
             format!("{}x{}", row.size[0], row.size[1]),
             or_dash(time.map(|t| format!("{:.3}{mark}", t.median))),
             or_dash(time.map(|t| format!("{:.3}..{:.3}", t.ci95[0], t.ci95[1]))),
+            or_dash(row.ratio.as_ref().map(ratio)),
             or_dash(row.prepare.map(|p| format!("{:.3}", p.gpu_ms + p.cpu_ms))),
             or_dash(accuracy.map(|a| format!("{:.2} %", 100.0 * a.bad_share.one))),
             or_dash(shift.map(|d| format!("{:.2}", d.median))),
         ]);
     }
     table(&lines)
+}
+
+/// To the first row of the scene and size; with prepare, too, where frames were prepared anew.
+fn ratio(ratio: &Ratio) -> String {
+    let frame = work::ratio(ratio.frame);
+    if ratio.with_prepare == ratio.frame {
+        return frame;
+    }
+    format!("{frame}; with prepare {}", work::ratio(ratio.with_prepare))
 }

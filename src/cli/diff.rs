@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use super::args::share;
 use super::console::{Console, table};
+use super::work;
 use crate::error::{Error, Result};
-use crate::experiment::diff::{self, FrameDiff, Ratio, RowDiff};
+use crate::experiment::diff::{self, FrameDiff, RowDiff};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -100,11 +101,6 @@ fn runs_report(rows: &[RowDiff], at_px: f64) -> String {
         lines[0][column] = format!("{} {bad}", heading[column]);
     }
     let or_dash = |text: Option<String>| text.unwrap_or_else(|| "-".into());
-    let ratio = |r: Ratio| {
-        let [low, high] = r.interval;
-        let verdict = if r.differs { "" } else { ", no difference" };
-        format!("{:.3} ({low:.3}..{high:.3}{verdict})", r.value)
-    };
     for row in rows {
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
         lines.push(vec![
@@ -113,7 +109,7 @@ fn runs_report(rows: &[RowDiff], at_px: f64) -> String {
             format!("{}x{}", row.size[0], row.size[1]),
             or_dash(row.frame_gpu_ms.map(|ms| format!("{:.3}", ms[0]))),
             or_dash(row.frame_gpu_ms.map(|ms| format!("{:.3}", ms[1]))),
-            or_dash(row.ratio.map(ratio)),
+            or_dash(row.ratio.map(work::ratio)),
             or_dash(row.bad_share[0].map(percent)),
             or_dash(row.bad_share[1].map(percent)),
         ]);

@@ -55,7 +55,7 @@ pub fn profile(args: &Args, methods: &[&'static MethodInfo]) -> Result<()> {
     for outcome in bench::bench(&lab, &scene, std::slice::from_ref(&case), &plan)? {
         outcome.save(&folder)?;
         if let (Some(path), Some(timing)) = (&args.trace, &outcome.timing) {
-            write_trace(path, &timing.frames)?;
+            write_trace(path, &timing.frames().cloned().collect::<Vec<_>>())?;
         }
         console.object(&outcome.row)?;
         console.report(&report(&outcome.row))?;

@@ -7,6 +7,7 @@ use super::console::Console;
 use crate::error::{Error, Result};
 use crate::experiment::lab::{Lab, Settings, default_folder};
 use crate::experiment::output::OutputFolder;
+use crate::measure::ratio::Comparison;
 use crate::methods::nearest::valid_names;
 use crate::methods::{Case, MethodInfo};
 use crate::scene::{self, Scene};
@@ -81,4 +82,10 @@ pub fn folder(out: Option<&PathBuf>, scene: &Scene, case: &Case) -> Result<Outpu
 /// What to say beside a time: a software rasteriser's is marked wherever it is shown.
 pub fn time_mark(software: bool) -> &'static str {
     if software { " (software)" } else { "" }
+}
+
+/// `1.250 (1.240..1.260, slower)`: a ratio, its interval, and what they say.
+pub fn ratio(ratio: Comparison) -> String {
+    let [low, high] = ratio.ci95;
+    format!("{:.3} ({low:.3}..{high:.3}, {})", ratio.median, ratio.verdict.text())
 }

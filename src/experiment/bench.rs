@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use serde_json::json;
 
+use super::comparison::{self, Ratio};
 use super::engine::FrameTimes;
 use super::evidence::{self, Evidence};
 use super::lab::{Lab, TRUTH};
@@ -49,9 +50,10 @@ pub fn bench(lab: &Lab, scene: &Scene, cases: &[Case], plan: &BenchPlan) -> Resu
     let outcomes = cases.iter().zip(gathered).enumerate().map(|(i, (case, evidence))| {
         let timed = timings.remove(&i);
         let mut row = row(lab, scene, case, plan, &truth_frames)?;
-        if let Some((timing, still)) = &timed {
+        if let Some(Timed { timing, still, ratio }) = &timed {
             row.prepare = Some(rows::prepare(timing));
             row.frame_gpu_ms = rows::frame_time(timing, lab.settings.seed);
+            row.ratio.clone_from(ratio);
             row.passes = rows::passes(timing);
             rows::add_invocations(&mut row.passes, &still.times);
             row.clock = Some(timing.clock);
@@ -63,7 +65,7 @@ pub fn bench(lab: &Lab, scene: &Scene, cases: &[Case], plan: &BenchPlan) -> Resu
             row.accuracy = evidence.accuracy();
             row.counters.clone_from(&evidence.counters);
         }
-        Ok(Outcome { row, timing: timed.map(|(timing, _)| timing), evidence })
+        Ok(Outcome { row, timing: timed.map(|timed| timed.timing), evidence })
     });
     outcomes.collect()
 }
@@ -74,17 +76,25 @@ struct Still {
     reflector_pixels: usize,
 }
 
+struct Timed {
+    timing: Timing,
+    still: Still,
+    ratio: Option<Ratio>,
+}
+
 /// Times every case but the truth, by its place in the list.
 fn time(
     lab: &Lab,
     scene: &Scene,
     cases: &[Case],
     plan: &BenchPlan,
-) -> Result<BTreeMap<usize, (Timing, Still)>> {
+) -> Result<BTreeMap<usize, Timed>> {
     let places: Vec<usize> = (0..cases.len()).filter(|&i| !cases[i].uses(TRUTH)).collect();
     if places.is_empty() {
         return Ok(BTreeMap::new());
     }
+    let timed_cases: Vec<Case> = places.iter().map(|&i| cases[i].clone()).collect();
+    let baseline = comparison::baseline(&timed_cases);
     let settings = &lab.settings;
     let engines =
         places.iter().map(|&i| lab.engine(scene, &cases[i], settings.size, settings.record));
@@ -95,6 +105,7 @@ fn time(
         seed: settings.seed,
         clock: lab.clock_source()?,
         cap: TimingPlan::CAP,
+        baseline,
     };
     lab.progress.set_message(format!("{}: timing {} cases", scene.name, places.len()));
     let begun = lab.progress.position();
@@ -108,7 +119,15 @@ fn time(
         Ok(Still { times, reflector_pixels: frame.reflector_pixels().len() })
     });
     let stills = stills.collect::<Result<Vec<_>>>()?;
-    Ok(places.into_iter().zip(timings.into_iter().zip(stills)).collect())
+    let base = (timed_cases[baseline].text.as_str(), &timings[baseline]);
+    let ratio = |(i, timing)| {
+        let other = Some(timing).filter(|_| i != baseline);
+        other.and_then(|timing| comparison::ratio(timing, base, settings.seed))
+    };
+    let ratios: Vec<Option<Ratio>> = timings.iter().enumerate().map(ratio).collect();
+    let parts = timings.into_iter().zip(stills).zip(ratios);
+    let timed = parts.map(|((timing, still), ratio)| Timed { timing, still, ratio });
+    Ok(places.into_iter().zip(timed).collect())
 }
 
 /// A row without measurements.
@@ -140,6 +159,7 @@ pub fn row(
         reflector_pixels: None,
         prepare: None,
         frame_gpu_ms: None,
+        ratio: None,
         passes: Vec::new(),
         counters: BTreeMap::new(),
         accuracy: None,
@@ -159,7 +179,7 @@ impl Outcome {
     /// # Errors
     /// [`crate::error::Error::Output`].
     pub fn save(&self, folder: &OutputFolder) -> Result<PathBuf> {
-        let timed = self.timing.iter().flat_map(|timing| &timing.frames).map(|(frame, times)| {
+        let timed = self.timing.iter().flat_map(Timing::frames).map(|(frame, times)| {
             let prepare: f64 = times.prepare.iter().map(|pass| pass.gpu_ms).sum();
             json!({"frame": frame, "gpu_ms": times.frame_gpu_ms, "prepare_gpu_ms": prepare})
         });

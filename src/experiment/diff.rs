@@ -9,6 +9,7 @@ use super::frame_file::{FrameFile, read_exr};
 use super::results::Row;
 use super::results_file::{self, RESULTS};
 use crate::error::{Error, Result};
+use crate::measure::ratio::Comparison;
 use crate::measure::{Accuracy, accuracy};
 use crate::scene;
 use crate::truth::{Tracer, TruthOptions};
@@ -63,23 +64,11 @@ pub struct RowDiff {
     pub size: [u32; 2],
     /// Median frame times of A and B, milliseconds.
     pub frame_gpu_ms: Option<[f64; 2]>,
-    /// B's over A's time.
-    pub ratio: Option<Ratio>,
+    /// B's over A's median, and the widest interval that theirs allow: nothing was interleaved.
+    pub ratio: Option<Comparison>,
     /// Share of bad pixels of A and B at the displacement asked for.
     pub bad_share: [Option<f64>; 2],
 }
-
-/// A ratio of two medians and the widest interval that theirs allow.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Ratio {
-    pub value: f64,
-    pub interval: [f64; 2],
-    /// False where the interval meets 1 +- 0.03.
-    pub differs: bool,
-}
-
-/// Ratios nearer to one than this are no difference.
-const NO_DIFFERENCE: f64 = 0.03;
 
 /// Compares the rows two folders have in common: same scene, case, size and frames; of several
 /// with the same, the last. `at_px` is one of 0.5, 1, 2 and 4.
@@ -96,9 +85,7 @@ pub fn runs(a: &Path, b: &Path, at_px: f64) -> Result<Vec<RowDiff>> {
             frame_gpu_ms: times.map(|(a, b)| [a.median, b.median]),
             ratio: times.map(|(a, b)| {
                 let interval = [b.ci95[0] / a.ci95[1], b.ci95[1] / a.ci95[0]];
-                let [low, high] = interval;
-                let differs = low > 1.0 + NO_DIFFERENCE || high < 1.0 - NO_DIFFERENCE;
-                Ratio { value: b.median / a.median, interval, differs }
+                Comparison::new(b.median / a.median, interval)
             }),
             bad_share: [bad_share(a, at_px)?, bad_share(&b, at_px)?],
             scene: b.scene.name,
@@ -139,6 +126,7 @@ mod tests {
     use super::super::evidence::tests::accuracy_of;
     use super::super::results::tests::row;
     use super::*;
+    use crate::measure::ratio::Verdict::{Faster, NoDifference, Slower};
 
     fn folder_with(rows: &[Row]) -> tempfile::TempDir {
         let folder = tempfile::tempdir().unwrap();
@@ -159,11 +147,12 @@ mod tests {
     #[test]
     fn runs_are_told_apart_beyond_their_intervals() {
         let a = folder_with(&[timed(9.0), timed(10.0)]);
-        for (ms, differs) in [(10.0, false), (10.4, false), (11.0, true), (9.0, true)] {
+        let cases = [(10.0, NoDifference), (10.4, NoDifference), (11.0, Slower), (9.0, Faster)];
+        for (ms, verdict) in cases {
             let b = folder_with(&[timed(ms)]);
             let [diff] = <[RowDiff; 1]>::try_from(runs(a.path(), b.path(), 1.0).unwrap()).unwrap();
-            assert_eq!(diff.ratio.unwrap().differs, differs, "{ms}");
-            assert!((diff.ratio.unwrap().value - ms / 10.0).abs() < 1e-12, "the last row counts");
+            assert_eq!(diff.ratio.unwrap().verdict, verdict, "{ms}");
+            assert!((diff.ratio.unwrap().median - ms / 10.0).abs() < 1e-12, "the last row counts");
             assert_eq!(diff.bad_share, [Some(0.25); 2]);
         }
     }

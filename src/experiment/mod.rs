@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod clock;
+pub mod comparison;
 pub mod diff;
 mod dump_file;
 pub mod engine;
@@ -13,6 +14,7 @@ pub mod probe;
 pub mod results;
 pub mod results_file;
 mod rows;
+mod runner;
 pub mod sweep;
 pub mod timing;
 pub mod trace;

@@ -8,6 +8,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::clock::Clock;
+use super::comparison::Ratio;
 use super::engine::{Fallback, RecordMode};
 use crate::gpu::DeviceInfo;
 use crate::measure::Accuracy;
@@ -58,6 +60,8 @@ pub struct Row {
     pub prepare: Option<Prepare>,
     /// Null where nothing was timed.
     pub frame_gpu_ms: Option<FrameTime>,
+    /// Null for the first case of a table, and where too few rounds were timed.
+    pub ratio: Option<Ratio>,
     pub passes: Vec<PassRow>,
     /// Device-independent work a frame, named by the method; mean over the frames compared.
     pub counters: BTreeMap<String, f64>,
@@ -112,7 +116,7 @@ pub struct FrameTime {
     pub p95: f64,
     /// Frames measured after warm-up.
     pub n: u64,
-    /// 95 % bootstrap interval of the median.
+    /// 95 % bootstrap interval of the median, drawn in runs of bursts.
     pub ci95: [f64; 2],
     /// Median with the prepare passes of each frame included.
     pub with_prepare: f64,
@@ -148,19 +152,6 @@ pub struct Stability {
 pub struct Jitter {
     pub median: f64,
     pub p95: f64,
-}
-
-/// The state of the machine around the timing; null where the system does not tell.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Clock {
-    /// Clock of what did the work: the GPU, or the processor for a software rasteriser.
-    pub before_mhz: Option<f64>,
-    pub after_mhz: Option<f64>,
-    /// Bursts dropped because the clock had fallen more than a tenth below its highest.
-    pub throttled: u64,
-    /// Load average over a minute, before timing.
-    pub load: Option<f64>,
 }
 
 impl Row {
@@ -251,6 +242,7 @@ impl RecordMode {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::measure::ratio::Comparison;
     use crate::methods::{Selected, Values};
 
     /// A row in which every optional part is there.
@@ -293,6 +285,12 @@ pub(super) mod tests {
                 ci95: [1.9, 2.1],
                 with_prepare: 6.0,
             }),
+            ratio: Some(Ratio {
+                baseline: "none".into(),
+                rounds: 30,
+                frame: Comparison::new(2.0, [1.9, 2.1]),
+                with_prepare: Comparison::new(6.0, [5.7, 6.3]),
+            }),
             passes: vec![PassRow {
                 name: "environment-map/reflect".into(),
                 prepare: false,
@@ -312,6 +310,8 @@ pub(super) mod tests {
                 after_mhz: None,
                 throttled: 0,
                 load: Some(0.5),
+                load_after: Some(1.5),
+                steady: true,
             }),
         }
     }
@@ -336,6 +336,7 @@ pub(super) mod tests {
             "reflector_pixels",
             "prepare",
             "frame_gpu_ms",
+            "ratio",
             "passes",
             "counters",
             "accuracy",

@@ -2,14 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use super::comparison::with_prepare;
 use super::engine::{FrameTimes, PassTime};
 use super::results::{FrameTime, PassRow, Prepare};
 use super::timing::Timing;
-use crate::measure::statistics::{Spread, median, median_ci95};
+use crate::measure::statistics::{Spread, blocks_median_ci95, median};
 
 /// Cost of prepare, over all calls seen, warm-up included: a still scene is prepared only there.
 pub fn prepare(timing: &Timing) -> Prepare {
-    let frames = || timing.warm_up.iter().chain(timing.frames.iter().map(|(_, times)| times));
+    let frames = || timing.warm_up.iter().chain(timing.frames().map(|(_, times)| times));
     let calls: Vec<&FrameTimes> = frames().filter(|times| !times.prepare.is_empty()).collect();
     let typical = |time: fn(&PassTime) -> f64| {
         let sums: Vec<f64> = calls.iter().map(|t| t.prepare.iter().map(time).sum()).collect();
@@ -25,26 +26,28 @@ pub fn prepare(timing: &Timing) -> Prepare {
 
 /// GPU time of the timed frames; `None` where there are none.
 pub fn frame_time(timing: &Timing, seed: u64) -> Option<FrameTime> {
-    let alone: Vec<f64> = timing.frames.iter().map(|(_, t)| t.frame_gpu_ms).collect();
-    let prepared = timing.frames.iter().map(|(_, t)| {
-        let prepare: f64 = t.prepare.iter().map(|pass| pass.gpu_ms).sum();
-        t.frame_gpu_ms + prepare
-    });
+    let blocks: Vec<Vec<f64>> = timing
+        .bursts
+        .iter()
+        .map(|burst| burst.frames.iter().map(|(_, times)| times.frame_gpu_ms).collect())
+        .collect();
+    let alone = blocks.concat();
+    let prepared: Vec<f64> = timing.frames().map(|(_, times)| with_prepare(times)).collect();
     let Spread { median: middle, min, p95 } = Spread::of(&alone)?;
     Some(FrameTime {
         median: middle,
         min,
         p95,
         n: alone.len() as u64,
-        ci95: median_ci95(&alone, seed)?,
-        with_prepare: median(&prepared.collect::<Vec<_>>())?,
+        ci95: blocks_median_ci95(&blocks, seed)?,
+        with_prepare: median(&prepared)?,
     })
 }
 
 /// Every pass in the order first met, prepare's first. A pass that runs several times in a frame
 /// counts with the sum.
 pub fn passes(timing: &Timing) -> Vec<PassRow> {
-    let frames = || timing.frames.iter().map(|(_, times)| times);
+    let frames = || timing.frames().map(|(_, times)| times);
     let prepares = timing.warm_up.iter().chain(frames()).map(|times| &times.prepare);
     let mut rows = of_frames(prepares, true);
     rows.extend(of_frames(frames().map(|times| &times.passes), false));
@@ -92,7 +95,8 @@ pub fn add_invocations(rows: &mut [PassRow], counted: &FrameTimes) {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::super::results::Clock;
+    use super::super::clock::Clock;
+    use super::super::timing::Burst;
     use super::*;
 
     pub fn pass(name: &str, gpu_ms: f64, begin_ms: f64) -> PassTime {
@@ -108,10 +112,12 @@ pub(super) mod tests {
             counters: Vec::new(),
         };
         let prepare = vec![pass("capture", 3.0, 0.0), pass("mip", 1.0, 3.0)];
+        let burst =
+            |i: u32| Burst { round: i as usize, frames: vec![(i, frame(f64::from(i)))], mhz: None };
         Timing {
-            frames: (1..=5).map(|i| (i, frame(f64::from(i)))).collect(),
+            bursts: (1..=5).map(burst).collect(),
             warm_up: vec![FrameTimes { prepare, prepare_bytes: 128, ..frame(99.0) }],
-            clock: Clock { before_mhz: None, after_mhz: None, throttled: 0, load: None },
+            clock: Clock::default(),
         }
     }
 
@@ -126,11 +132,11 @@ pub(super) mod tests {
         let time = frame_time(&timing, 1).unwrap();
         assert_eq!((time.median, time.min, time.n, time.with_prepare), (7.0, 3.0, 5, 7.0));
         assert!(time.ci95[0] <= 7.0 && time.ci95[1] >= 7.0);
-        for (_, frame) in &mut timing.frames {
+        for (_, frame) in timing.bursts.iter_mut().flat_map(|burst| &mut burst.frames) {
             frame.prepare = vec![pass("capture", 3.0, 0.0)];
         }
         assert_eq!(frame_time(&timing, 1).unwrap().with_prepare, 10.0);
-        timing.frames.clear();
+        timing.bursts.clear();
         assert_eq!(frame_time(&timing, 1), None);
     }
 

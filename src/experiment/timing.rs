@@ -1,16 +1,18 @@
 //! Timing frames so that the numbers mean something.
 //!
 //! Bursts without readback, after a warm-up until steady; the cases of a scene interleaved in random
-//! order, so that a slow minute of the machine hits all of them; until the bootstrap interval of each
-//! median is narrow or a cap is hit.
+//! order, so that a slow minute of the machine hits all of them; until the bootstrap intervals of each
+//! median, and of its ratio to the baseline's, are narrow or a cap is hit.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use super::clock::{self, ClockSource};
+use super::clock::{self, Clock, ClockSource};
+use super::comparison::log_ratios;
 use super::engine::{Engine, FrameTimes};
-use super::results::Clock;
+use super::runner::Runner;
 use crate::error::Result;
-use crate::measure::statistics::{SplitMix64, median, median_ci95};
+use crate::measure::ratio::Comparison;
+use crate::measure::statistics::SplitMix64;
 use crate::scene::Moment;
 
 /// What plays frames: an engine, or a test's stand-in.
@@ -28,52 +30,53 @@ impl Player for Engine {
 /// When a measurement is enough.
 #[derive(Clone, Copy, Debug)]
 pub struct TimingPlan {
-    /// Play the whole list of frames so often, instead of until the interval is narrow.
+    /// Play the whole list of frames so often, instead of until the intervals are narrow.
     pub repeat: Option<u32>,
     pub seed: u64,
     pub clock: ClockSource,
     /// Wall time for each case, warm-up included, unless `repeat` is given.
     pub cap: Duration,
+    /// The player whose times the others' are compared with.
+    pub baseline: usize,
 }
 
 impl TimingPlan {
     pub const CAP: Duration = Duration::from_secs(5);
 }
 
-/// The frames of one case, in the order played.
+/// Frames drawn in one submit.
+#[derive(Clone, Debug)]
+pub struct Burst {
+    /// Bursts of one round show the same frames, one player after the other.
+    pub round: usize,
+    /// Frame number and times.
+    pub frames: Vec<(u32, FrameTimes)>,
+    /// The clock right after it, where the system tells.
+    pub mhz: Option<f64>,
+}
+
+/// The frames of one case.
 #[derive(Clone, Debug)]
 pub struct Timing {
-    /// Frame number and times, warm-up not included.
-    pub frames: Vec<(u32, FrameTimes)>,
+    /// In the order played; neither warm-up nor throttled bursts are among them.
+    pub bursts: Vec<Burst>,
     /// Warm-up frames: their prepare counts, their times do not.
     pub warm_up: Vec<FrameTimes>,
     pub clock: Clock,
 }
 
-/// The interval is narrow when it lies within this share of the median on either side.
-const NARROW: f64 = 0.03;
-/// Bursts after which an interval is looked at, at the earliest.
-const FEWEST_BURSTS: usize = 4;
-/// Longest burst in frames and, roughly, in milliseconds: one submit must not look like a hang.
-const BURST_FRAMES: usize = 8;
-const BURST_MS: f64 = 400.0;
-/// Two bursts in a row agree when their medians differ by less than this share.
-const STEADY: f64 = 0.05;
-const WARM_UP_BURSTS: usize = 6;
-/// Bursts below this share of the highest clock seen are dropped.
-const THROTTLED: f64 = 0.9;
-
-struct Burst {
-    frames: Vec<(u32, FrameTimes)>,
-    mhz: Option<f64>,
+impl Timing {
+    /// Frame number and times of all bursts.
+    pub fn frames(&self) -> impl Iterator<Item = &(u32, FrameTimes)> {
+        self.bursts.iter().flat_map(|burst| &burst.frames)
+    }
 }
 
-struct Runner<'p, P> {
-    player: &'p mut P,
-    warm_up: Vec<FrameTimes>,
-    bursts: Vec<Burst>,
-    seconds: f64,
-}
+/// An interval is narrow when it lies within this share of the median on either side.
+pub(super) const NARROW: f64 = 0.03;
+/// Rounds after which intervals are looked at first; then each time there are half as many more.
+/// Few looks, so that no interval is stopped at for being narrow by chance.
+const FIRST_LOOK: usize = 8;
 
 /// Times all players over the same list of frames. `tick` hears the share of the work done, 0 to 1.
 ///
@@ -85,16 +88,15 @@ pub fn measure<P: Player>(
     plan: &TimingPlan,
     tick: &mut dyn FnMut(f64),
 ) -> Result<Vec<Timing>> {
-    let load = clock::load();
-    let before_mhz = plan.clock.mhz();
+    let mut clock = Clock { before_mhz: plan.clock.mhz(), load: clock::load(), ..Clock::default() };
     let mut runners: Vec<Runner<P>> = players.iter_mut().map(Runner::new).collect();
-    let mut length = BURST_FRAMES;
+    let mut length = usize::MAX;
     for runner in &mut runners {
         length = length.min(runner.warm_up(moments, plan)?);
     }
     play(&mut runners, moments, length, plan, tick)?;
-    let after_mhz = plan.clock.mhz();
-    let clock = Clock { before_mhz, after_mhz, throttled: 0, load };
+    clock.after_mhz = plan.clock.mhz();
+    clock.load_after = clock::load();
     Ok(runners.into_iter().map(|runner| runner.finish(clock)).collect())
 }
 
@@ -108,11 +110,14 @@ fn play<P: Player>(
 ) -> Result<()> {
     let chunks: Vec<&[Moment]> = moments.chunks(length).collect();
     let order = spread_order(chunks.len());
+    let rounds = plan.repeat.map(|repeat| repeat as usize * chunks.len());
     let mut random = SplitMix64::new(plan.seed);
+    let mut enough = vec![false; runners.len()];
+    let mut next_look = FIRST_LOOK;
     for round in 0.. {
-        let unfinished = |i: &usize| match plan.repeat {
-            Some(repeat) => round < repeat as usize * chunks.len(),
-            None => !runners[*i].is_done(plan),
+        let unfinished = |i: &usize| match rounds {
+            Some(rounds) => round < rounds,
+            None => !enough[*i] && !runners[*i].is_capped(plan),
         };
         let mut turn: Vec<usize> = (0..runners.len()).filter(unfinished).collect();
         if turn.is_empty() {
@@ -120,11 +125,15 @@ fn play<P: Player>(
         }
         random.shuffle(&mut turn);
         for i in turn {
-            runners[i].play(chunks[order[round % chunks.len()]], plan)?;
+            runners[i].play(round, chunks[order[round % chunks.len()]], plan)?;
         }
-        let shares = runners.iter().map(|runner| match plan.repeat {
-            Some(repeat) => round as f64 / (repeat as usize * chunks.len()) as f64,
-            None if runner.is_done(plan) => 1.0,
+        if round + 1 == next_look && rounds.is_none() {
+            enough = look(runners, plan);
+            next_look += next_look / 2;
+        }
+        let shares = runners.iter().zip(&enough).map(|(runner, enough)| match rounds {
+            Some(rounds) => (round + 1) as f64 / rounds as f64,
+            None if *enough => 1.0,
             None => runner.seconds / plan.cap.as_secs_f64(),
         });
         tick(shares.fold(0.0, |sum, share| sum + share.min(1.0)) / runners.len() as f64);
@@ -132,67 +141,22 @@ fn play<P: Player>(
     Ok(())
 }
 
-impl<'p, P: Player> Runner<'p, P> {
-    fn new(player: &'p mut P) -> Self {
-        Runner { player, warm_up: Vec::new(), bursts: Vec::new(), seconds: 0.0 }
-    }
-
-    /// Plays the beginning of the list until two bursts agree; returns the burst length that fits.
-    fn warm_up(&mut self, moments: &[Moment], plan: &TimingPlan) -> Result<usize> {
-        let begun = Instant::now();
-        let mut length = 1;
-        let mut last = f64::INFINITY;
-        for _ in 0..WARM_UP_BURSTS {
-            let times = self.player.burst(&moments[..length.min(moments.len())])?;
-            let frame_ms: Vec<f64> = times.iter().map(|t| t.frame_gpu_ms).collect();
-            self.warm_up.extend(times);
-            let now = median(&frame_ms).unwrap_or(0.0);
-            let steady = (now - last).abs() <= STEADY * now;
-            last = now;
-            length = (BURST_MS / now.max(1e-3)).clamp(1.0, BURST_FRAMES as f64) as usize;
-            if steady || begun.elapsed() > plan.cap / 2 {
-                break;
-            }
-        }
-        self.seconds = begun.elapsed().as_secs_f64();
-        Ok(length)
-    }
-
-    fn play(&mut self, chunk: &[Moment], plan: &TimingPlan) -> Result<()> {
-        let begun = Instant::now();
-        let times = self.player.burst(chunk)?;
-        self.seconds += begun.elapsed().as_secs_f64();
-        let frames = chunk.iter().map(|moment| moment.frame).zip(times).collect();
-        self.bursts.push(Burst { frames, mhz: plan.clock.mhz() });
-        Ok(())
-    }
-
-    fn is_done(&self, plan: &TimingPlan) -> bool {
-        if self.bursts.is_empty() {
-            return false;
-        }
-        if self.seconds >= plan.cap.as_secs_f64() {
-            return true;
-        }
-        let frames = self.bursts.iter().flat_map(|burst| &burst.frames);
-        let frame_ms: Vec<f64> = frames.map(|(_, times)| times.frame_gpu_ms).collect();
-        self.bursts.len() >= FEWEST_BURSTS && is_narrow(&frame_ms, plan.seed)
-    }
-
-    /// Drops throttled bursts and counts them.
-    fn finish(self, mut clock: Clock) -> Timing {
-        let highest = self.bursts.iter().filter_map(|burst| burst.mhz).fold(0.0, f64::max);
-        let is_kept = |burst: &Burst| burst.mhz.is_none_or(|mhz| mhz >= THROTTLED * highest);
-        clock.throttled = self.bursts.iter().filter(|burst| !is_kept(burst)).count() as u64;
-        let kept = self.bursts.into_iter().filter(is_kept);
-        Timing { frames: kept.flat_map(|b| b.frames).collect(), warm_up: self.warm_up, clock }
-    }
+/// Which players need no further rounds. The baseline plays as long as another needs it.
+fn look<P: Player>(runners: &[Runner<P>], plan: &TimingPlan) -> Vec<bool> {
+    let baseline = &runners[plan.baseline];
+    let is_enough = |runner: &Runner<P>| {
+        let ratios = log_ratios(runner.kept(), baseline.kept(), |times| times.frame_gpu_ms);
+        let ratio = Comparison::of_rounds(&ratios, plan.seed);
+        let is_narrow = ratio.is_some_and(|ratio| is_narrow(ratio.median, ratio.ci95));
+        runner.is_narrow(plan.seed) && (is_narrow || baseline.is_capped(plan))
+    };
+    let mut enough: Vec<bool> = runners.iter().map(is_enough).collect();
+    let is_over = |(runner, enough): (&Runner<P>, &bool)| *enough || runner.is_capped(plan);
+    enough[plan.baseline] = runners.iter().zip(&enough).all(is_over);
+    enough
 }
 
-fn is_narrow(values: &[f64], seed: u64) -> bool {
-    let (Some(median), Some([low, high])) = (median(values), median_ci95(values, seed)) else {
-        return false;
-    };
+pub(super) fn is_narrow(median: f64, [low, high]: [f64; 2]) -> bool {
     high - low <= 2.0 * NARROW * median
 }
 
@@ -210,13 +174,14 @@ fn spread_order(n: usize) -> Vec<usize> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::geometry::{Camera, Projection};
+    use crate::measure::statistics::median;
     use glam::Vec3;
 
     /// Takes a steady time after a slow start, and notes what it was asked for.
-    struct Fake {
+    pub struct Fake {
         frame_ms: f64,
         noise: SplitMix64,
         played: Vec<u32>,
@@ -234,13 +199,13 @@ mod tests {
         }
     }
 
-    fn fakes(times: &[f64]) -> Vec<Fake> {
+    pub fn fakes(times: &[f64]) -> Vec<Fake> {
         let noise = SplitMix64::new(3);
         let fake = |&frame_ms| Fake { frame_ms, noise: noise.clone(), played: Vec::new() };
         times.iter().map(fake).collect()
     }
 
-    fn moments(n: u32) -> Vec<Moment> {
+    pub fn moments(n: u32) -> Vec<Moment> {
         let camera = Camera {
             eye: Vec3::Z,
             target: Vec3::ZERO,
@@ -252,8 +217,9 @@ mod tests {
         (0..n).map(|frame| Moment { frame, camera, poses: Vec::new() }).collect()
     }
 
-    fn plan(repeat: Option<u32>) -> TimingPlan {
-        TimingPlan { repeat, seed: 7, clock: ClockSource::Processor, cap: TimingPlan::CAP }
+    pub fn plan(repeat: Option<u32>) -> TimingPlan {
+        let cap = TimingPlan::CAP;
+        TimingPlan { repeat, seed: 7, clock: ClockSource::Processor, cap, baseline: 0 }
     }
 
     #[test]
@@ -261,9 +227,9 @@ mod tests {
         let timings =
             measure(&mut fakes(&[1.0, 2.0]), &moments(20), &plan(None), &mut |_| ()).unwrap();
         for (timing, expected) in timings.iter().zip([1.0, 2.0]) {
-            let times: Vec<f64> = timing.frames.iter().map(|(_, t)| t.frame_gpu_ms).collect();
+            let times: Vec<f64> = timing.frames().map(|(_, t)| t.frame_gpu_ms).collect();
             assert!((median(&times).unwrap() / expected - 1.0).abs() < 0.02);
-            assert!(times.len() >= FEWEST_BURSTS && times.iter().all(|t| *t < 2.0 * expected));
+            assert!(times.len() >= FIRST_LOOK && times.iter().all(|t| *t < 2.0 * expected));
         }
     }
 
@@ -275,32 +241,11 @@ mod tests {
             measure(&mut players, &moments(21), &plan(Some(3)), &mut |share| last = share).unwrap();
         for timing in timings {
             for frame in 0..21 {
-                let count = timing.frames.iter().filter(|(f, _)| *f == frame).count();
+                let count = timing.frames().filter(|(f, _)| *f == frame).count();
                 assert_eq!(count, 3, "frame {frame}");
             }
         }
         assert!(last > 0.9 && last <= 1.0);
-    }
-
-    #[test]
-    fn slow_frames_come_in_short_bursts() {
-        for (frame_ms, expected) in [(0.01, 8), (100.0, 4), (1e6, 1)] {
-            let mut player = fakes(&[frame_ms]).remove(0);
-            let length = Runner::new(&mut player).warm_up(&moments(9), &plan(None)).unwrap();
-            assert!(length.abs_diff(expected) <= 1, "{frame_ms} ms gave {length}");
-        }
-    }
-
-    #[test]
-    fn throttled_bursts_are_dropped_and_counted() {
-        let mut player = fakes(&[1.0]).remove(0);
-        let mut runner = Runner::new(&mut player);
-        for mhz in [Some(3000.0), Some(2000.0), Some(2900.0)] {
-            runner.bursts.push(Burst { frames: vec![(0, FrameTimes::default())], mhz });
-        }
-        let idle = Clock { before_mhz: None, after_mhz: None, throttled: 0, load: None };
-        let timing = runner.finish(idle);
-        assert_eq!((timing.frames.len(), timing.clock.throttled), (2, 1));
     }
 
     #[test]

@@ -6,6 +6,7 @@ pub mod colour;
 mod displacement;
 mod field;
 mod judge;
+pub mod ratio;
 mod root;
 pub mod statistics;
 mod tree;
