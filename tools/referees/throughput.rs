@@ -1,0 +1,102 @@
+//! Rays a second of the truth beside Embree's: `cargo bench --bench referees`.
+//!
+//! One thread each, the same triangles and the same rays, batch by batch in random order, one after
+//! the other on each batch, the first chosen by lot; so what else the machine does meets both alike.
+//! Only Embree's own call is timed, not the pipe to it. A ratio is the median over the batches
+//! with its 95 % bootstrap interval.
+
+#[path = "../../tests/referee_support/mod.rs"]
+mod support;
+
+use std::time::{Duration, Instant};
+
+use mirrorbench::geometry::Ray;
+use mirrorbench::geometry::bvh::Bvh;
+use mirrorbench::measure::statistics::{SplitMix64, median, median_ci95};
+use mirrorbench::scene::{Scene, load};
+use mirrorbench::truth::{Hit, Tracer, TruthOptions};
+use support::embree::Embree;
+
+const SIZE: [u32; 2] = [512, 512];
+const BATCH: usize = 5000;
+const ROUNDS: usize = 15;
+
+fn main() {
+    // Embree's quicker mode, that of its default scene flags.
+    let mut embree = Embree::start(false);
+    println!("million rays a second on one thread");
+    println!("scene    triangles  rays               ours  Embree  ratio");
+    compare("fine", &support::fine(), 0, &mut embree);
+    // Late on its path the camera is close to a mirror.
+    compare("kitchen", &load("kitchen").expect("a shipped scene"), 150, &mut embree);
+}
+
+fn compare(name: &str, scene: &Scene, frame: u32, embree: &mut Embree) {
+    let moment = scene.at(frame);
+    let triangles = support::triangles(scene, &moment);
+    let tracer = Tracer::new(scene, &moment, TruthOptions::default());
+    let bvh = Bvh::new(&triangles);
+    embree.load(&triangles);
+    let tree = |ray: &Ray| bvh.nearest(ray, [0.0, f32::INFINITY], |_, _| true).map(|hit| hit.t);
+    let leave = |(hit, direction): &(Hit, _)| tracer.leave(hit, *direction).map(|hit| hit.distance);
+
+    let primary = support::primary(&moment, SIZE);
+    let mirrored = support::mirrored(&tracer, SIZE);
+    let raised: Vec<Ray> = mirrored.iter().map(support::raised).collect();
+    for (rays, rates) in [
+        ("primary, tree", race(&primary, tree, Ray::clone, embree)),
+        ("mirrored, tree", race(&raised, tree, Ray::clone, embree)),
+        ("mirrored, tracer", race(&mirrored, leave, support::raised, embree)),
+    ] {
+        let Rates { ours, theirs, ratio, interval: [low, high] } = rates;
+        let count = triangles.len();
+        println!(
+            "{name:8} {count:9}  {rays:16} {ours:6.2}  {theirs:6.2}  {ratio:.3} [{low:.3}, {high:.3}]"
+        );
+    }
+}
+
+struct Rates {
+    ours: f64,
+    theirs: f64,
+    ratio: f64,
+    interval: [f64; 2],
+}
+
+/// Times `trace` on all of `items` and Embree on the `ray` of each.
+fn race<T>(
+    items: &[T],
+    trace: impl Fn(&T) -> Option<f32>,
+    ray: impl Fn(&T) -> Ray,
+    embree: &mut Embree,
+) -> Rates {
+    let mut random = SplitMix64::new(1);
+    let mut batches: Vec<&[T]> = (0..ROUNDS).flat_map(|_| items.chunks_exact(BATCH)).collect();
+    random.shuffle(&mut batches);
+    let own = |batch: &[T]| -> Duration {
+        let start = Instant::now();
+        let distances: Vec<Option<f32>> = batch.iter().map(&trace).collect();
+        let time = start.elapsed();
+        std::hint::black_box(distances);
+        time
+    };
+    let times = batches.iter().map(|batch| {
+        let rays: Vec<Ray> = batch.iter().map(&ray).collect();
+        if random.below(2) == 0 {
+            (own(batch), embree.trace(&rays).0)
+        } else {
+            let theirs = embree.trace(&rays).0;
+            (own(batch), theirs)
+        }
+    });
+    let times: Vec<[f64; 2]> = times.map(|(a, b)| [a.as_secs_f64(), b.as_secs_f64()]).collect();
+    let each = |value: fn(&[f64; 2]) -> f64| times.iter().map(value).collect::<Vec<f64>>();
+    let rate = |seconds: Vec<f64>| median(&seconds).map(|time| 1e-6 * BATCH as f64 / time);
+    let ratios = each(|[ours, theirs]| theirs / ours);
+    Rates {
+        ours: rate(each(|times| times[0])).expect("rays"),
+        theirs: rate(each(|times| times[1])).expect("rays"),
+        ratio: median(&ratios).expect("rays"),
+        interval: median_ci95(&ratios, 1).expect("rays"),
+    }
+}
