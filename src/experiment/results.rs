@@ -10,8 +10,8 @@ use serde_json::{Map, Value};
 
 use super::engine::{Fallback, RecordMode};
 use crate::gpu::DeviceInfo;
-use crate::measure::Accuracy;
 use crate::measure::statistics::Spread;
+use crate::measure::{Accuracy, Stability};
 use crate::methods::{Case, Kind, MethodInfo};
 use crate::scene::Scene;
 
@@ -132,24 +132,6 @@ pub struct PassRow {
     pub invocations: u64,
 }
 
-/// Steadiness along a path (DESIGN 7).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Stability {
-    pub jitter_px: Jitter,
-    /// Frames in which more than 0.5 % of the pixels jump by over a pixel.
-    pub pops: u64,
-    /// Colour; null on paths faster than 1/8 px a frame.
-    pub temporal_error: Option<f64>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Jitter {
-    pub median: f64,
-    pub p95: f64,
-}
-
 /// The state of the machine around the timing; null where the system does not tell.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -250,6 +232,7 @@ impl RecordMode {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::measure::Jitter;
     use crate::methods::{Selected, Values};
 
     /// A row in which every optional part is there.
@@ -302,9 +285,13 @@ pub(super) mod tests {
             counters: BTreeMap::from([("rays".to_owned(), 1000.0)]),
             accuracy: None,
             stability: Some(Stability {
-                jitter_px: Jitter { median: 0.1, p95: 0.2 },
+                frames: [0, 2],
+                jitter_px: Some(Jitter { median: 0.1, p95: 0.2 }),
                 pops: 0,
                 temporal_error: None,
+                points: 900.0,
+                covered: 0.9,
+                speed_px: 2.0,
             }),
             clock: Some(Clock {
                 before_mhz: Some(3000.0),

@@ -31,14 +31,17 @@ const TRACED_RIM_PX: f32 = 4.0;
 /// The slope of a guess is taken from rays that far beside it.
 const SLOPE_STEP_PX: f32 = 0.25;
 
-/// What is asked of one pixel.
+/// What is asked of one pixel, or of one position.
 pub(super) struct Query<'a> {
     pub tracer: &'a Tracer<'a>,
     pub size: [u32; 2],
     /// Of the order of `chain`.
     pub field: &'a Field,
-    pub pixel: UVec2,
-    /// The truth's chain at the pixel, and its key.
+    /// The position the root is to be near, pixels, within the image.
+    pub near: Vec2,
+    /// How far from there it may be.
+    pub reach_px: f32,
+    /// The truth's chain there, and its key.
     pub chain: &'a Chain,
     pub key: Key,
     pub target: Target,
@@ -55,11 +58,10 @@ pub(super) enum Kind {
 }
 
 impl Query<'_> {
-    /// Pixels from the pixel's centre to the nearest root; `None` when none is within
-    /// [`REACH_PX`]. `queue` is scratch space.
-    pub fn displacement(&self, queue: &mut Queue) -> Option<f32> {
+    /// The nearest root; `None` when none is within reach. `queue` is scratch space.
+    pub fn root(&self, queue: &mut Queue) -> Option<Vec2> {
         let trees = self.field.trees(self.key)?;
-        let mut best = Best { of: centre(self.pixel), root: None, squared: REACH_PX * REACH_PX };
+        let mut best = self.nothing_yet();
         queue.clear();
         for kind in [Kind::Cells, Kind::Rims] {
             self.enqueue(queue, &best, trees, kind, kind.of(trees).root());
@@ -79,7 +81,11 @@ impl Query<'_> {
             }
         }
         self.trace_rims(&mut best);
-        best.root.map(|root| root.distance(best.of))
+        best.root
+    }
+
+    fn nothing_yet(&self) -> Best {
+        Best { of: self.near, root: None, squared: self.reach_px * self.reach_px }
     }
 
     fn enqueue(
@@ -124,7 +130,7 @@ impl Query<'_> {
     /// Roots around the rim pixels where their neighbours do not help, as far as the pixels are
     /// near enough for a root there to matter.
     fn trace_rims(&self, best: &mut Best) {
-        for rim in self.field.rims_around(self.pixel, self.key, TRACED_RIM_PX) {
+        for rim in self.field.rims_around(self.near.as_uvec2(), self.key, TRACED_RIM_PX) {
             let missed = || {
                 let corners = self.field.with_neighbours(rim);
                 corners.and_then(|corners| at_rim(self.target, corners)).is_none()
@@ -242,10 +248,9 @@ mod tests {
 
         /// The root that one visit finds.
         fn alone(&self, visit: impl Fn(&mut Best)) -> Option<f32> {
-            let of = centre(self.pixel);
-            let mut best = Best { of, root: None, squared: REACH_PX * REACH_PX };
+            let mut best = self.nothing_yet();
             visit(&mut best);
-            best.root.map(|root| root.distance(of))
+            best.root.map(|root| root.distance(self.near))
         }
     }
 
@@ -270,7 +275,8 @@ mod tests {
                 tracer: &tracer,
                 size,
                 field: &fields[chain.order() as usize - 1],
-                pixel: UVec2::new(pixel as u32 % size[0], pixel as u32 / size[0]),
+                near: centre(UVec2::new(pixel as u32 % size[0], pixel as u32 / size[0])),
+                reach_px: REACH_PX,
                 chain,
                 key: key(chain.trace, chain.order()),
                 target: Target::new(point),
@@ -286,9 +292,11 @@ mod tests {
         stride: usize,
         other: impl Fn(&Query) -> Option<f32>,
     ) -> [usize; 3] {
+        let found =
+            |query: &Query| query.root(&mut Queue::new()).map(|root| root.distance(query.near));
         let mut counts = [0; 3];
         ask(scene, frame.parse().unwrap(), size, stride, |query| {
-            let kind = match (query.displacement(&mut Queue::new()), other(&query)) {
+            let kind = match (found(&query), other(&query)) {
                 (Some(found), Some(expected)) if (found - expected).abs() < 0.05 => 0,
                 (None, None) => 1,
                 _ => 2,
