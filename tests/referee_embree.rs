@@ -9,7 +9,7 @@ use mirrorbench::geometry::Ray;
 use mirrorbench::geometry::bvh::Bvh;
 use mirrorbench::measure::statistics::{percentile, sorted};
 use mirrorbench::scene::{Moment, ObjectId, Scene, load};
-use mirrorbench::truth::{Hit, Tracer, TruthOptions};
+use mirrorbench::truth::{Bounce, Hit, Tracer, TruthOptions};
 use referee_support::embree::Embree;
 use referee_support::{mirrored, primary, raised, triangles};
 
@@ -63,8 +63,8 @@ fn agree(name: &str, scene: &Scene, frame: u32) {
     let theirs = nearest(&mut embree, &rays);
     compare(&format!("{name}, mirrored rays"), &world, TREE, rays.iter().map(tree).zip(theirs));
 
-    let ours = left.iter().map(|(hit, direction)| -> Met {
-        let next = tracer.leave(hit, *direction)?;
+    let ours = left.iter().map(|bounce| -> Met {
+        let next = tracer.leave(bounce)?;
         Some((world.first[next.object as usize] + next.triangle, next.distance))
     });
     let theirs = leave(&mut embree, &world, &left);
@@ -165,14 +165,14 @@ impl World {
 }
 
 /// Embree's answer by the truth's rule: what the rule rejects is stepped over.
-fn leave(embree: &mut Embree, world: &World, left: &[(Hit, Vec3)]) -> Vec<Met> {
+fn leave(embree: &mut Embree, world: &World, left: &[Bounce]) -> Vec<Met> {
     let mut found: Vec<Met> = vec![None; left.len()];
     let mut open: Vec<usize> = (0..left.len()).collect();
     let mut travelled = vec![0.0f32; left.len()];
     while !open.is_empty() {
         let ray = |&i: &usize| {
-            let (hit, direction) = &left[i];
-            Ray { origin: hit.point + travelled[i] * *direction, direction: *direction }
+            let Bounce { hit, outgoing, .. } = &left[i];
+            Ray { origin: hit.point + travelled[i] * *outgoing, direction: *outgoing }
         };
         let rays: Vec<Ray> = open.iter().map(ray).collect();
         let met = nearest(embree, &rays);
@@ -181,8 +181,8 @@ fn leave(embree: &mut Embree, world: &World, left: &[(Hit, Vec3)]) -> Vec<Met> {
             .zip(met)
             .filter_map(|(i, met)| {
                 let (triangle, distance) = met?;
-                let (hit, direction) = &left[i];
-                if world.accepts(hit, triangle, *direction) {
+                let Bounce { hit, outgoing, .. } = &left[i];
+                if world.accepts(hit, triangle, *outgoing) {
                     found[i] = Some((triangle, travelled[i] + distance));
                     return None;
                 }

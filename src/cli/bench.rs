@@ -9,8 +9,11 @@ use super::work;
 use crate::error::{Error, Result};
 use crate::experiment::bench::{self, BenchPlan};
 use crate::experiment::comparison::{self, Ratio};
+use crate::experiment::path::DEFAULT_FRAMES;
 use crate::experiment::results::Row;
 use crate::experiment::sweep::{Sweep, batches};
+use crate::measure::Stability;
+use crate::measure::stability::LEAST_FRAMES;
 use crate::methods::{Case, MethodInfo};
 use crate::scene::Scene;
 
@@ -34,13 +37,17 @@ pub struct BenchArgs {
     /// How many of the frames, evenly spaced, are compared with the truth
     #[arg(long, default_value_t = 3, value_name = "N")]
     truth_frames: usize,
+    /// Follow scene points from frame to frame, for jitter and pops: along all of --frames, or
+    /// along the animation's first 48
+    #[arg(long)]
+    path: bool,
     #[command(flatten)]
     common: Common,
 }
 
 #[derive(Debug, clap::Args)]
 pub struct SweepArgs {
-    /// TOML file: scenes, cases, and optionally vary, sizes, frames, repeat, truth_frames
+    /// TOML file: scenes, cases, and optionally vary, sizes, frames, repeat, truth_frames, path
     file: PathBuf,
     /// Do part I of N only
     #[arg(long, value_name = "I/N")]
@@ -57,6 +64,7 @@ struct Request {
     frames: Option<Frames>,
     repeat: Option<u32>,
     truth_frames: usize,
+    path: bool,
     shard: Option<Shard>,
 }
 
@@ -68,6 +76,7 @@ pub fn bench(args: &BenchArgs, methods: &[&'static MethodInfo]) -> Result<()> {
         frames: args.frames.clone(),
         repeat: args.repeat,
         truth_frames: args.truth_frames,
+        path: args.path,
         shard: None,
     };
     run(&request, &args.common, methods)
@@ -87,6 +96,7 @@ pub fn sweep(args: &SweepArgs, methods: &[&'static MethodInfo]) -> Result<()> {
         frames: parsed(args, "frames", sweep.frames.as_slice())?.pop(),
         repeat: sweep.repeat,
         truth_frames: sweep.truth_frames,
+        path: sweep.path,
         shard: args.shard,
     };
     run(&request, &args.common, methods)
@@ -114,9 +124,10 @@ fn run(request: &Request, common: &Common, methods: &[&'static MethodInfo]) -> R
     let batches = batches(counts, shard);
     let mut plans = Vec::new();
     for scene in scenes {
-        let frames = frames_of(scene, request.frames.as_ref())?.collect();
+        let frames: Vec<u32> = frames_of(scene, request.frames.as_ref())?.collect();
+        let path = if request.path { path_of(scene, &frames, request)? } else { Vec::new() };
         let Request { truth_frames, repeat, .. } = *request;
-        plans.push(BenchPlan { frames, truth_frames, timed: true, repeat });
+        plans.push(BenchPlan { frames, truth_frames, timed: true, repeat, path });
     }
     // All folders are tried before any work is done.
     for batch in &batches {
@@ -141,7 +152,45 @@ fn run(request: &Request, common: &Common, methods: &[&'static MethodInfo]) -> R
         }
     }
     console.report(&summary(&rows))?;
+    if request.path {
+        console.report(&steadiness(&rows))?;
+    }
     lab.close()
+}
+
+/// The frames to follow: those the user named, or the animation's first.
+fn path_of(scene: &Scene, frames: &[u32], request: &Request) -> Result<Vec<u32>> {
+    let count = request.frames.as_ref().map_or(DEFAULT_FRAMES, |_| frames.len()).min(frames.len());
+    if count < LEAST_FRAMES {
+        return Err(Error::Usage(format!(
+            "--path on scene {}: {count} frames; valid: at least {LEAST_FRAMES}",
+            scene.name
+        )));
+    }
+    Ok(frames[..count].to_vec())
+}
+
+/// One line a case: how steady it is.
+fn steadiness(rows: &[Row]) -> String {
+    let heading = ["SCENE", "CASE", "JITTER PX", "P95 PX", "POPS", "COLOUR", "COVERED", "SPEED PX"];
+    let mut lines = vec![heading.map(str::to_owned).to_vec()];
+    for row in rows {
+        let Some(stability) = &row.stability else { continue };
+        let Stability { jitter_px, pops, temporal_error, covered, speed_px, .. } = stability;
+        let or_dash =
+            |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.3}"));
+        lines.push(vec![
+            row.scene.name.clone(),
+            row.case.clone(),
+            or_dash(jitter_px.map(|jitter| jitter.median)),
+            or_dash(jitter_px.map(|jitter| jitter.p95)),
+            pops.to_string(),
+            or_dash(*temporal_error),
+            format!("{:.1} %", 100.0 * covered),
+            format!("{speed_px:.2}"),
+        ]);
+    }
+    table(&lines)
 }
 
 /// One line a row: cost and error.

@@ -51,7 +51,8 @@ pub fn profile(args: &Args, methods: &[&'static MethodInfo]) -> Result<()> {
     }
     let lab = work::lab(&args.common, methods, &console, folder.path().to_owned());
     console.progress().set_length(1);
-    let plan = BenchPlan { frames, truth_frames: 0, timed: true, repeat: args.repeat };
+    let plan =
+        BenchPlan { frames, truth_frames: 0, timed: true, repeat: args.repeat, path: Vec::new() };
     for outcome in bench::bench(&lab, &scene, std::slice::from_ref(&case), &plan)? {
         outcome.save(&folder)?;
         if let (Some(path), Some(timing)) = (&args.trace, &outcome.timing) {

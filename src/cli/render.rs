@@ -43,7 +43,13 @@ pub fn render(args: &Args, methods: &[&'static MethodInfo]) -> Result<()> {
     let lab = work::lab(&args.common, methods, &console, folder.path().to_owned());
     console.progress().set_length(frames.len() as u64);
     draw(&lab, &scene, &case, &frames, &folder)?;
-    let plan = BenchPlan { frames, truth_frames: args.truth_frames, timed: false, repeat: None };
+    let plan = BenchPlan {
+        frames,
+        truth_frames: args.truth_frames,
+        timed: false,
+        repeat: None,
+        path: Vec::new(),
+    };
     for outcome in bench::bench(&lab, &scene, std::slice::from_ref(&case), &plan)? {
         outcome.save(&folder)?;
         console.object(&outcome.row)?;

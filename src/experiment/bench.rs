@@ -10,6 +10,7 @@ use super::engine::FrameTimes;
 use super::evidence::{self, Evidence};
 use super::lab::{Lab, TRUTH};
 use super::output::{OutputFolder, write_file};
+use super::path::{self, PathRun};
 use super::results::{COMMIT, Row, SCHEMA_VERSION, SceneCard, case_columns};
 use super::results_file::{self, RESULTS};
 use super::rows;
@@ -29,6 +30,8 @@ pub struct BenchPlan {
     pub timed: bool,
     /// Play the frames so often, instead of until the interval is narrow.
     pub repeat: Option<u32>,
+    /// Consecutive frames along which scene points are followed; none where empty.
+    pub path: Vec<u32>,
 }
 
 /// One row and the arrays behind it.
@@ -37,6 +40,7 @@ pub struct Outcome {
     pub row: Row,
     pub timing: Option<Timing>,
     pub evidence: Evidence,
+    pub path: Option<PathRun>,
 }
 
 /// Measures cases of one scene. The cases are timed in turns within each other.
@@ -47,6 +51,10 @@ pub fn bench(lab: &Lab, scene: &Scene, cases: &[Case], plan: &BenchPlan) -> Resu
     let truth_frames = evidence::evenly_spaced(&plan.frames, plan.truth_frames);
     let mut timings = if plan.timed { time(lab, scene, cases, plan)? } else { BTreeMap::new() };
     let gathered = evidence::gather(lab, scene, cases, &truth_frames)?;
+    let mut paths = match plan.path.as_slice() {
+        [] => vec![None; cases.len()],
+        frames => path::follow(lab, scene, cases, frames)?.into_iter().map(Some).collect(),
+    };
     let outcomes = cases.iter().zip(gathered).enumerate().map(|(i, (case, evidence))| {
         let timed = timings.remove(&i);
         let mut row = row(lab, scene, case, plan, &truth_frames)?;
@@ -65,7 +73,9 @@ pub fn bench(lab: &Lab, scene: &Scene, cases: &[Case], plan: &BenchPlan) -> Resu
             row.accuracy = evidence.accuracy();
             row.counters.clone_from(&evidence.counters);
         }
-        Ok(Outcome { row, timing: timed.map(|timed| timed.timing), evidence })
+        let path = paths[i].take();
+        row.stability = path.as_ref().map(|path| path.stability.clone());
+        Ok(Outcome { row, timing: timed.map(|timed| timed.timing), evidence, path })
     });
     outcomes.collect()
 }
@@ -167,7 +177,7 @@ pub fn row(
         clock: None,
     };
     // Everything known before measuring is an input.
-    let inputs = json!([row, settings.seed, plan.timed, plan.repeat]);
+    let inputs = json!([row, settings.seed, plan.timed, plan.repeat, plan.path]);
     row.run = blake3::hash(inputs.to_string().as_bytes()).to_hex()[..16].to_owned();
     Ok(row)
 }
@@ -189,6 +199,7 @@ impl Outcome {
         let arrays = json!({
             "run": self.row.run, "scene": self.row.scene.name, "case": self.row.case,
             "timed": timed.collect::<Vec<_>>(), "compared": compared.collect::<Vec<_>>(),
+            "path": self.path.as_ref().map_or(&[][..], |path| &path.frames),
         });
         let path = folder.file(&format!("{}.frames.json", self.row.run));
         write_file(&path, |file| Ok(serde_json::to_writer(file, &arrays)?))?;

@@ -10,6 +10,7 @@ pub mod evidence;
 pub mod frame_file;
 pub mod lab;
 pub mod output;
+pub mod path;
 pub mod probe;
 pub mod results;
 pub mod results_file;

@@ -12,8 +12,8 @@ use super::clock::Clock;
 use super::comparison::Ratio;
 use super::engine::{Fallback, RecordMode};
 use crate::gpu::DeviceInfo;
-use crate::measure::Accuracy;
 use crate::measure::statistics::Spread;
+use crate::measure::{Accuracy, Stability};
 use crate::methods::{Case, Kind, MethodInfo};
 use crate::scene::Scene;
 
@@ -136,24 +136,6 @@ pub struct PassRow {
     pub invocations: u64,
 }
 
-/// Steadiness along a path (DESIGN 7).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Stability {
-    pub jitter_px: Jitter,
-    /// Frames in which more than 0.5 % of the pixels jump by over a pixel.
-    pub pops: u64,
-    /// Colour; null on paths faster than 1/8 px a frame.
-    pub temporal_error: Option<f64>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Jitter {
-    pub median: f64,
-    pub p95: f64,
-}
-
 impl Row {
     /// The JSON Schema of a row, as committed in `paper-figures/results.schema.json`.
     pub fn schema() -> Value {
@@ -242,6 +224,7 @@ impl RecordMode {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::measure::Jitter;
     use crate::measure::ratio::Comparison;
     use crate::methods::{Selected, Values};
 
@@ -301,9 +284,13 @@ pub(super) mod tests {
             counters: BTreeMap::from([("rays".to_owned(), 1000.0)]),
             accuracy: None,
             stability: Some(Stability {
-                jitter_px: Jitter { median: 0.1, p95: 0.2 },
+                frames: [0, 2],
+                jitter_px: Some(Jitter { median: 0.1, p95: 0.2 }),
                 pops: 0,
                 temporal_error: None,
+                points: 900.0,
+                covered: 0.9,
+                speed_px: 2.0,
             }),
             clock: Some(Clock {
                 before_mhz: Some(3000.0),

@@ -21,6 +21,8 @@ pub struct Sweep {
     pub repeat: Option<u32>,
     #[serde(default = "three")]
     pub truth_frames: usize,
+    #[serde(default)]
+    pub path: bool,
 }
 
 fn three() -> usize {

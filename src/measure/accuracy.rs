@@ -250,7 +250,7 @@ fn scatter<T: Clone>(
 }
 
 /// A colour that is not a number is none.
-fn finite(colour: glam::Vec3) -> glam::Vec3 {
+pub(super) fn finite(colour: glam::Vec3) -> glam::Vec3 {
     if colour.is_finite() { colour } else { glam::Vec3::ZERO }
 }
 

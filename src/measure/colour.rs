@@ -13,16 +13,15 @@ const RELATIVE_FLOOR: f64 = 1e-2;
 
 /// The fixed tone mapping: exposure, clamp, sRGB curve, 8 bits.
 pub fn tone_map(linear: Vec3) -> [u8; 3] {
-    let encode = |value: f32| {
+    displayed(linear).to_array().map(|value| (255.0 * value).round() as u8)
+}
+
+/// The same before rounding, 0 to 1.
+pub fn displayed(linear: Vec3) -> Vec3 {
+    linear.map(|value| {
         let value = (EXPOSURE * value).clamp(0.0, 1.0);
-        let encoded = if value <= 0.003_130_8 {
-            12.92 * value
-        } else {
-            1.055 * value.powf(1.0 / 2.4) - 0.055
-        };
-        (255.0 * encoded).round() as u8
-    };
-    linear.to_array().map(encode)
+        if value <= 0.003_130_8 { 12.92 * value } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 }
+    })
 }
 
 /// Mean over pixels and channels of the squared difference, relative to the squared reference.

@@ -33,14 +33,17 @@ const SLOPE_STEP_PX: f32 = 0.25;
 /// The same around a pixel's own centre, wherever the chain is wide enough.
 const OWN_STEPS_PX: [f32; 3] = [0.05, 0.01, 0.002];
 
-/// What is asked of one pixel.
+/// What is asked of one pixel, or of one position.
 pub(super) struct Query<'a> {
     pub tracer: &'a Tracer<'a>,
     pub size: [u32; 2],
     /// Of the order of `chain`.
     pub field: &'a Field,
-    pub pixel: UVec2,
-    /// The truth's chain at the pixel, and its key.
+    /// The position the root is to be near, pixels, within the image.
+    pub near: Vec2,
+    /// How far from there it may be.
+    pub reach_px: f32,
+    /// The truth's chain there, and its key.
     pub chain: &'a Chain,
     pub key: Key,
     pub target: Target,
@@ -57,15 +60,10 @@ pub(super) enum Kind {
 }
 
 impl Query<'_> {
-    /// Pixels from the pixel's centre to the nearest root; `None` when none is within
-    /// [`REACH_PX`]. `queue` is scratch space.
-    pub fn displacement(&self, queue: &mut Queue) -> Option<f32> {
-        self.beside_centre().or_else(|| self.searched(queue))
-    }
-
-    fn searched(&self, queue: &mut Queue) -> Option<f32> {
+    /// The nearest root; `None` when none is within reach. `queue` is scratch space.
+    pub fn root(&self, queue: &mut Queue) -> Option<Vec2> {
         let trees = self.field.trees(self.key)?;
-        let mut best = Best { of: centre(self.pixel), root: None, squared: REACH_PX * REACH_PX };
+        let mut best = self.nothing_yet();
         queue.clear();
         for kind in [Kind::Cells, Kind::Rims] {
             self.enqueue(queue, &best, trees, kind, kind.of(trees).root());
@@ -85,21 +83,24 @@ impl Query<'_> {
             }
         }
         self.trace_rims(&mut best);
-        best.root.map(|root| root.distance(best.of))
+        best.root
     }
 
-    /// The root next to the pixel's own centre, if there is one: the search may miss it, as a chain
+    fn nothing_yet(&self) -> Best {
+        Best { of: self.near, root: None, squared: self.reach_px * self.reach_px }
+    }
+
+    /// The root next to the position asked of, if there is one: the search may miss it, as a chain
     /// seen through several mirrors or past an edge may be a hundredth of a pixel wide.
-    fn beside_centre(&self) -> Option<f32> {
-        let trace = |position| self.trace(position);
-        let away = |step_px: f32| {
-            traced_guess(self.target, centre(self.pixel), step_px, trace)?.distance()
+    pub fn root_beside(&self) -> Option<Vec2> {
+        let step = |width_px: f32| {
+            traced_guess(self.target, self.near, width_px, |position| self.trace(position))?.step()
         };
-        let away = OWN_STEPS_PX.map(away);
-        // The widest step is the most precise, but across an edge it makes anything seem near.
-        let closest = away.into_iter().flatten().last()?;
-        let near = away.into_iter().flatten().find(|&away| away < CONFIRMED_PX)?;
-        (closest < CONFIRMED_PX).then_some(near)
+        let steps = OWN_STEPS_PX.map(step);
+        let is_near = |step: &Vec2| step.length() < CONFIRMED_PX;
+        // The widest slope is the most precise, but across an edge it makes anything seem near.
+        steps.into_iter().flatten().last().filter(is_near)?;
+        steps.into_iter().flatten().find(is_near).map(|step| self.near + step)
     }
 
     fn enqueue(
@@ -144,7 +145,7 @@ impl Query<'_> {
     /// Roots around the rim pixels where their neighbours do not help, as far as the pixels are
     /// near enough for a root there to matter.
     fn trace_rims(&self, best: &mut Best) {
-        for rim in self.field.rims_around(self.pixel, self.key, TRACED_RIM_PX) {
+        for rim in self.field.rims_around(self.near.as_uvec2(), self.key, TRACED_RIM_PX) {
             let missed = || {
                 let corners = self.field.with_neighbours(rim);
                 corners.and_then(|corners| at_rim(self.target, corners)).is_none()
@@ -266,10 +267,9 @@ mod tests {
 
         /// The root that one visit finds.
         fn alone(&self, visit: impl Fn(&mut Best)) -> Option<f32> {
-            let of = centre(self.pixel);
-            let mut best = Best { of, root: None, squared: REACH_PX * REACH_PX };
+            let mut best = self.nothing_yet();
             visit(&mut best);
-            best.root.map(|root| root.distance(of))
+            best.root.map(|root| root.distance(self.near))
         }
     }
 
@@ -294,7 +294,8 @@ mod tests {
                 tracer: &tracer,
                 size,
                 field: &fields[chain.order() as usize - 1],
-                pixel: UVec2::new(pixel as u32 % size[0], pixel as u32 / size[0]),
+                near: centre(UVec2::new(pixel as u32 % size[0], pixel as u32 / size[0])),
+                reach_px: REACH_PX,
                 chain,
                 key: key(chain, chain.order()),
                 target: Target::new(point),
@@ -310,9 +311,11 @@ mod tests {
         stride: usize,
         other: impl Fn(&Query) -> Option<f32>,
     ) -> [usize; 3] {
+        let found =
+            |query: &Query| query.root(&mut Queue::new()).map(|root| root.distance(query.near));
         let mut counts = [0; 3];
         ask(scene, frame.parse().unwrap(), size, stride, |query| {
-            let kind = match (query.searched(&mut Queue::new()), other(&query)) {
+            let kind = match (found(&query), other(&query)) {
                 (Some(found), Some(expected)) if (found - expected).abs() < 0.05 => 0,
                 (None, None) => 1,
                 _ => 2,

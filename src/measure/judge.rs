@@ -1,11 +1,12 @@
 //! One pixel's answers against the truth's, one for each lobe of its reflector.
 
-use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
 use super::accuracy::Class;
-use super::displacement::{Query, Queue};
+use super::displacement::{Query, Queue, REACH_PX};
 use super::field::{Field, Target, key};
+use super::root::centre;
 use crate::geometry::Ray;
 use crate::scene::{FrameRecord, Ids, Lobe, ReflectionRecord, Status, shading};
 use crate::truth::{Chain, Tracer};
@@ -16,7 +17,7 @@ use crate::truth::{Chain, Tracer};
 const ROUNDING_DEG: f32 = 1e-4;
 
 /// Relative difference of distances over which a depth is wrong.
-const DEPTH_TOLERANCE: f32 = 0.05;
+pub(super) const DEPTH_TOLERANCE: f32 = 0.05;
 
 /// What became of one compared pixel: the worse of its lobes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -77,17 +78,17 @@ impl Judged {
 
 /// The part of a record that is compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Answer {
-    status: Status,
-    ids: Ids,
-    point: Vec4,
+pub(super) struct Answer {
+    pub status: Status,
+    pub ids: Ids,
+    pub point: Vec4,
 }
 
 impl Answer {
     const NONE: Answer = Answer { status: Status::Missing, ids: Ids::MISSING, point: Vec4::ZERO };
 
     /// Of a record, where there is one.
-    fn of(record: Option<&ReflectionRecord>, pixel: usize) -> Self {
+    pub fn of(record: Option<&ReflectionRecord>, pixel: usize) -> Self {
         let Some(record) = record else { return Answer::NONE };
         let (ids, point) = (record.ids[pixel], record.point[pixel]);
         // A point that is not a number is no answer.
@@ -96,7 +97,7 @@ impl Answer {
     }
 
     /// Whether both show the same spot of the same surface, whoever found it.
-    fn equals(&self, other: &Answer) -> bool {
+    pub fn equals(&self, other: &Answer) -> bool {
         let spot = |answer: &Answer| (answer.status, answer.ids.object, answer.ids.triangle);
         spot(self) == spot(other) && self.point == other.point
     }
@@ -139,18 +140,18 @@ pub(super) fn judge_all(
 }
 
 /// What judging any pixel of one lobe needs.
-struct Court<'a> {
-    tracer: &'a Tracer<'a>,
-    truth: &'a FrameRecord,
+pub(super) struct Court<'a> {
+    pub tracer: &'a Tracer<'a>,
+    pub truth: &'a FrameRecord,
     lobe: Lobe,
     /// Every reflector pixel's chain.
-    chains: Vec<Option<Chain>>,
+    pub chains: Vec<Option<Chain>>,
     /// By order, from 1.
     fields: Vec<Field>,
 }
 
 impl<'a> Court<'a> {
-    fn new(truth: &'a FrameRecord, tracer: &'a Tracer, lobe: Lobe) -> Self {
+    pub fn new(truth: &'a FrameRecord, tracer: &'a Tracer, lobe: Lobe) -> Self {
         let size = truth.size;
         let chains = chains(tracer, size, lobe);
         let longest = chains.iter().flatten().map(Chain::order).max().unwrap_or(0);
@@ -186,13 +187,10 @@ impl<'a> Court<'a> {
         let spurious = !found(&expected) && found(&answer);
         let target = Target::new(answer.point);
         let angle_deg = angle_deg(chain, target);
-        let displacement_px = if missing || spurious {
-            None
-        } else if angle_deg <= ROUNDING_DEG {
-            Some(0.0)
-        } else {
-            self.displacement(pixel, chain, target, queue)
-        };
+        let belongs =
+            if missing || spurious { None } else { self.belongs(pixel, chain, target, queue) };
+        let displacement_px =
+            belongs.map(|there| there.distance(centre(at(self.truth.size, pixel))));
         Some(Judged {
             missing,
             spurious,
@@ -205,23 +203,50 @@ impl<'a> Court<'a> {
         })
     }
 
-    fn displacement(
+    /// Where in the image the target belongs that a pixel shows: the pixel's own centre, or else
+    /// the nearest position on its chain.
+    pub fn belongs(
         &self,
         pixel: usize,
         chain: &Chain,
         target: Target,
         queue: &mut Queue,
-    ) -> Option<f32> {
-        let query = Query {
+    ) -> Option<Vec2> {
+        let near = centre(at(self.truth.size, pixel));
+        if angle_deg(chain, target) <= ROUNDING_DEG {
+            return Some(near);
+        }
+        let query = self.query(chain, target, near, REACH_PX)?;
+        query.root_beside().or_else(|| query.root(queue))
+    }
+
+    /// To ask for the position nearest to `near` from which a chain's mirrors show the target;
+    /// `None` where no chain of the frame is that long.
+    pub fn query<'c>(
+        &'c self,
+        chain: &'c Chain,
+        target: Target,
+        near: Vec2,
+        reach_px: f32,
+    ) -> Option<Query<'c>> {
+        Some(Query {
             tracer: self.tracer,
             size: self.truth.size,
-            field: &self.fields[chain.order() as usize - 1],
-            pixel: at(self.truth.size, pixel),
+            field: self.fields.get(chain.order() as usize - 1)?,
+            near,
+            reach_px,
             chain,
             key: key(chain, chain.order()),
             target,
-        };
-        query.displacement(queue)
+        })
+    }
+
+    /// The truth's colour at a position of a mirror; `None` beside the mirrors.
+    pub fn colour(&self, position: Vec2) -> Option<Vec3> {
+        let tracer = self.tracer;
+        let ray = tracer.moment().camera.ray(self.truth.size, position);
+        let hit = tracer.look(&ray).filter(|hit| tracer.scene().is_reflector(hit.object))?;
+        Some(tracer.leaving(&hit, ray.direction, tracer.bounces(), Vec3::ONE))
     }
 
     /// What this lobe adds to the colour at the pixel's centre, as traced and as it were with the
@@ -275,7 +300,7 @@ pub(super) fn chains(tracer: &Tracer, size: [u32; 2], lobe: Lobe) -> Vec<Option<
         .collect()
 }
 
-fn at(size: [u32; 2], pixel: usize) -> UVec2 {
+pub(super) fn at(size: [u32; 2], pixel: usize) -> UVec2 {
     let pixel = pixel as u32;
     UVec2::new(pixel % size[0], pixel / size[0])
 }

@@ -1,14 +1,19 @@
-//! How far a record is from the truth, and how sure a timing is. Compares two CPU records and knows
-//! no method.
+//! How far a record is from the truth, how steady along a path, and how sure a timing is. Compares CPU
+//! records and knows no method.
 
 pub mod accuracy;
 pub mod colour;
 mod displacement;
+mod drawn;
 mod field;
 mod judge;
 pub mod ratio;
 mod root;
+pub mod stability;
 pub mod statistics;
+mod track;
+mod trail;
 mod tree;
 
 pub use accuracy::{Accuracy, BadShare, Class, Flip, Maps, Quantiles, accuracy};
+pub use stability::{Jitter, PathFrame, PathMeasure, Stability};

@@ -63,9 +63,9 @@ pub(super) struct Guess {
 }
 
 impl Guess {
-    /// Pixels from the position to where the root seems to be by the slope there.
-    pub fn distance(&self) -> Option<f32> {
-        Some(step(&self.slope, self.off?)?.length())
+    /// From the position to where the root seems to be by the slope there, pixels.
+    pub fn step(&self) -> Option<Vec2> {
+        step(&self.slope, self.off?)
     }
 }
 

@@ -5,9 +5,8 @@ pub mod embree;
 
 use glam::{Vec2, Vec3};
 use mirrorbench::geometry::Ray;
-use mirrorbench::geometry::optics::reflect;
-use mirrorbench::scene::{self, Moment, Scene};
-use mirrorbench::truth::{Hit, Tracer};
+use mirrorbench::scene::{self, Lobe, Moment, Scene};
+use mirrorbench::truth::{Bounce, Tracer};
 
 /// Two finely cut mirrors and a finely cut object between them: 600,000 triangles.
 const FINE: &str = r#"
@@ -76,15 +75,18 @@ pub fn primary(moment: &Moment, size: [u32; 2]) -> Vec<Ray> {
 }
 
 /// Where the rays of an image meet mirrors, and the mirrored rays that leave from there.
-pub fn mirrored(tracer: &Tracer, size: [u32; 2]) -> Vec<(Hit, Vec3)> {
-    let rays = primary(tracer.moment(), size);
-    let hits = rays.iter().filter_map(|ray| Some((tracer.look(ray)?, ray.direction)));
-    hits.filter(|(hit, _)| tracer.mirror(hit).is_some())
-        .map(|(hit, incident)| (hit, reflect(incident, hit.normal)))
-        .collect()
+pub fn mirrored(tracer: &Tracer, size: [u32; 2]) -> Vec<Bounce> {
+    let lobe = Lobe::Reflected;
+    let bounce = |ray: &Ray| {
+        let hit = tracer.look(ray)?;
+        let outgoing = tracer.depart(&hit, ray.direction, lobe)?.direction;
+        Some(Bounce { hit, lobe, outgoing })
+    };
+    primary(tracer.moment(), size).iter().filter_map(bounce).collect()
 }
 
 /// The mirrored ray as one that needs no rule for its own surface: its origin raised a little.
-pub fn raised((hit, direction): &(Hit, Vec3)) -> Ray {
-    Ray { origin: hit.point + 1e-4 * hit.normal, direction: *direction }
+pub fn raised(bounce: &Bounce) -> Ray {
+    let Bounce { hit, outgoing, .. } = bounce;
+    Ray { origin: hit.point + 1e-4 * hit.normal, direction: *outgoing }
 }

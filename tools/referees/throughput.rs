@@ -14,7 +14,7 @@ use mirrorbench::geometry::Ray;
 use mirrorbench::geometry::bvh::Bvh;
 use mirrorbench::measure::statistics::{SplitMix64, median, median_ci95};
 use mirrorbench::scene::{Scene, load};
-use mirrorbench::truth::{Hit, Tracer, TruthOptions};
+use mirrorbench::truth::{Bounce, Tracer, TruthOptions};
 use support::embree::Embree;
 
 const SIZE: [u32; 2] = [512, 512];
@@ -38,7 +38,7 @@ fn compare(name: &str, scene: &Scene, frame: u32, embree: &mut Embree) {
     let bvh = Bvh::new(&triangles);
     embree.load(&triangles);
     let tree = |ray: &Ray| bvh.nearest(ray, [0.0, f32::INFINITY], |_, _| true).map(|hit| hit.t);
-    let leave = |(hit, direction): &(Hit, _)| tracer.leave(hit, *direction).map(|hit| hit.distance);
+    let leave = |bounce: &Bounce| tracer.leave(bounce).map(|hit| hit.distance);
 
     let primary = support::primary(&moment, SIZE);
     let mirrored = support::mirrored(&tracer, SIZE);
