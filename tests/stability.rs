@@ -6,7 +6,7 @@ mod truth_support;
 use glam::{Vec2, Vec3};
 use mirrorbench::measure::statistics::SplitMix64;
 use mirrorbench::measure::{PathFrame, PathMeasure, Stability};
-use mirrorbench::scene::{self, CameraPath, FrameRecord, Ids, Moment, Motion, Scene};
+use mirrorbench::scene::{self, CameraPath, FrameRecord, Ids, Lobe, Moment, Motion, Scene};
 use mirrorbench::truth::{Tracer, TruthOptions};
 use truth_support::at;
 
@@ -60,11 +60,11 @@ fn shifted(tracer: &Tracer, truth: &FrameRecord, offset: Vec2) -> FrameRecord {
             frame.record.ids[pixel] = Ids::MISSING;
             continue;
         };
-        let chain = tracer.chain(hit, ray.direction);
+        let chain = tracer.chain(hit, ray.direction, Lobe::Reflected).unwrap();
         frame.record.ids[pixel] = chain.ids();
         frame.record.point[pixel] = chain.point();
         frame.record.radiance[pixel] = chain.radiance;
-        frame.colour[pixel] = tracer.composite(&hit, chain.radiance);
+        frame.colour[pixel] = tracer.composite(&hit, ray.direction, |_| chain.radiance);
     }
     frame
 }
