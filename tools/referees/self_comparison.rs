@@ -40,6 +40,7 @@ static BURDENED: MethodInfo = MethodInfo {
     family: Family::ImageSpace,
     depends: Changes::ALL,
     flags: false,
+    refracts: false,
     variants: &["published"],
     params: &[Param {
         name: "iterations",
