@@ -106,15 +106,17 @@ fn is_kept(burst: &Burst, least_mhz: f64) -> bool {
 }
 
 /// Whether the last bursts' times have stopped drifting. Noise alone must not keep a busy machine
-/// warming up, nor a drift too small to matter a quiet one: either test is enough.
+/// warming up, nor a drift too small to matter a quiet one: either test is enough. In noise a trend
+/// shows only over twice as many bursts.
 fn is_steady(middles: &[f64]) -> bool {
-    let Some(last) = middles.len().checked_sub(STEADY_BURSTS).map(|first| &middles[first..]) else {
-        return false;
+    let last = |count: usize| middles.len().checked_sub(count).map(|first| &middles[first..]);
+    let drifts = |last: &[f64]| {
+        let (earlier, later) = last.split_at(STEADY_BURSTS / 2);
+        let both = median(earlier).zip(median(later));
+        both.is_some_and(|(a, b)| (b - a).abs() > STEADY * b.max(1e-9))
     };
-    let (earlier, later) = last.split_at(STEADY_BURSTS / 2);
-    let drift =
-        median(earlier).zip(median(later)).map_or(0.0, |(a, b)| (b - a).abs() / b.max(1e-9));
-    drift <= STEADY || !has_trend(last)
+    last(STEADY_BURSTS).is_some_and(|last| !drifts(last))
+        || last(2 * STEADY_BURSTS).is_some_and(|last| !has_trend(last))
 }
 
 #[cfg(test)]
@@ -143,8 +145,9 @@ mod tests {
         assert!(quick < slow, "{quick} {slow}");
         assert!(decay(0.7).nth(slow - STEADY_BURSTS).unwrap() < 1.1, "cold after {slow}");
         assert_eq!(begun(0.99), None, "never steady");
-        // Noise without a trend is steady at once, however strong.
-        assert!(is_steady(&[1.0, 1.4, 0.8, 1.2, 0.9, 1.3, 1.0, 1.1]));
+        // Noise without a trend is steady, however strong, once there is enough of it.
+        let noise = [1.0, 1.4, 0.8, 1.2, 0.9, 1.3, 1.0, 1.1];
+        assert!(!is_steady(&noise) && is_steady(&[noise, noise].concat()));
     }
 
     #[test]
