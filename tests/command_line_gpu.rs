@@ -46,6 +46,9 @@ fn doctor_and_devices_know_the_device() {
     let doctor = command().args(["doctor"]).assert().success();
     let report = String::from_utf8(doctor.get_output().stdout.clone()).unwrap();
     assert!(report.contains(device["name"].as_str().unwrap()), "{report}");
+    let rays = if device["ray_query"].as_bool().unwrap() { "yes" } else { "no" };
+    let line = report.lines().find(|line| line.starts_with("ray query")).unwrap();
+    assert!(line.ends_with(rays), "{line}");
 }
 
 #[test]

@@ -34,6 +34,7 @@ pub fn doctor(args: &Args) -> Result<()> {
         let kind = if d.is_software { ", software: its times are a processor's" } else { "" };
         format!("{} ({}, Vulkan {}{kind})", d.name, d.driver, d.api)
     });
+    let rays = picked.as_ref().map_or("none", |d| if d.ray_query { "yes" } else { "no" });
     let clock = if picked.as_ref().is_none_or(|d| d.is_software) {
         ClockSource::Processor
     } else {
@@ -44,6 +45,7 @@ pub fn doctor(args: &Args) -> Result<()> {
     let facts = [
         ("mirrorbench", format!("{} at {COMMIT}", env!("CARGO_PKG_VERSION"))),
         ("device", driver),
+        ("ray query", rays.to_owned()),
         ("devices", devices.len().to_string()),
         ("VK_DRIVER_FILES", std::env::var("VK_DRIVER_FILES").unwrap_or("not set".into())),
         ("validation layers", if validation { "found" } else { NO_LAYERS }.to_owned()),

@@ -62,11 +62,12 @@ fn list_scenes(console: &Console) -> Result<()> {
 }
 
 fn list_devices(console: &Console) -> Result<()> {
-    let mut rows = vec![row(["INDEX", "NAME", "DRIVER", "VULKAN", "KIND"])];
+    let mut rows = vec![row(["INDEX", "NAME", "DRIVER", "VULKAN", "KIND", "RAY QUERY"])];
     for device in gpu::list_devices()? {
         let kind = if device.is_software { "software" } else { "hardware" };
         let index = device.index.to_string();
-        rows.push(row([&index, &device.name, &device.driver, &device.api, kind]));
+        let rays = if device.ray_query { "yes" } else { "no" };
+        rows.push(row([&index, &device.name, &device.driver, &device.api, kind, rays]));
         console.object(&device)?;
     }
     console.report(&table(&rows))

@@ -36,6 +36,13 @@ pub struct Slice {
     pub(super) bytes: u64,
 }
 
+impl Slice {
+    pub(super) fn descriptor(&self) -> vk::DescriptorBufferInfo {
+        let Slice { buffer, offset, bytes } = *self;
+        vk::DescriptorBufferInfo::default().buffer(buffer).offset(offset).range(bytes)
+    }
+}
+
 impl Buffer {
     /// Device memory for storage, indirect arguments and indices; contents undefined.
     ///
@@ -53,7 +60,8 @@ impl Buffer {
             | vk::BufferUsageFlags::INDEX_BUFFER
             | vk::BufferUsageFlags::INDIRECT_BUFFER
             | vk::BufferUsageFlags::TRANSFER_SRC
-            | vk::BufferUsageFlags::TRANSFER_DST;
+            | vk::BufferUsageFlags::TRANSFER_DST
+            | build_input(device);
         Self::new(device, name, bytes, usage, MemoryLocation::GpuOnly)
     }
 
@@ -85,7 +93,9 @@ impl Buffer {
 
     /// Host-visible memory that a frame's uniforms and small arrays are written into.
     pub(super) fn upload_ring(device: &Arc<Device>, bytes: u64) -> Result<Buffer> {
-        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::STORAGE_BUFFER;
+        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER
+            | vk::BufferUsageFlags::STORAGE_BUFFER
+            | build_input(device);
         Self::new(device, "frame uploads", bytes, usage, MemoryLocation::CpuToGpu)
     }
 
@@ -93,6 +103,26 @@ impl Buffer {
     pub(super) fn readback(device: &Arc<Device>, name: &str, bytes: u64) -> Result<Buffer> {
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         Self::new(device, name, bytes, usage, MemoryLocation::GpuToCpu)
+    }
+
+    /// Device memory an acceleration structure lives in.
+    pub(super) fn structure(device: &Arc<Device>, name: &str, bytes: u64) -> Result<Buffer> {
+        let usage = vk::BufferUsageFlags::ACCELERATION_STRUCTURE_STORAGE_KHR
+            | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
+        Self::new(device, name, bytes, usage, MemoryLocation::GpuOnly)
+    }
+
+    /// Device memory a build of acceleration structures works in, `bytes` of it after its address
+    /// was rounded up to `alignment`.
+    pub(super) fn scratch(
+        device: &Arc<Device>,
+        name: &str,
+        bytes: u64,
+        alignment: u64,
+    ) -> Result<Buffer> {
+        let usage =
+            vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
+        Self::new(device, name, bytes + alignment, usage, MemoryLocation::GpuOnly)
     }
 
     fn new(
@@ -126,6 +156,15 @@ impl Buffer {
         bound.map_err(|e| device.fail("vkBindBufferMemory", name, e))?;
         device.name(raw, name);
         Ok(Buffer { raw, owner, name: name.to_owned(), bytes })
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Where it lies; only on devices with ray query.
+    pub(super) fn address(&self) -> vk::DeviceAddress {
+        self.owner.device.address(self.raw)
     }
 
     pub(super) fn whole(&self) -> Slice {
@@ -166,6 +205,16 @@ impl Buffer {
             unsafe { device.raw.cmd_copy_buffer(commands, self.raw, target.raw, &[region]) };
         })?;
         target.contents()
+    }
+}
+
+/// Where the device traces rays, builds of acceleration structures may read any buffer.
+fn build_input(device: &Device) -> vk::BufferUsageFlags {
+    if device.has_ray_query() {
+        vk::BufferUsageFlags::ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_KHR
+            | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS
+    } else {
+        vk::BufferUsageFlags::empty()
     }
 }
 

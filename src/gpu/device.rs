@@ -13,6 +13,7 @@ use gpu_allocator::vulkan::{
 use serde::Serialize;
 
 use super::instance::{Instance, ValidationLog};
+use super::ray_query::{self, RayQuery};
 use super::{Sampler, Shaders};
 use crate::error::{Error, Result};
 
@@ -25,6 +26,8 @@ pub struct DeviceInfo {
     pub api: String,
     /// A software rasteriser: its times say nothing about GPUs.
     pub is_software: bool,
+    /// Shaders can have it trace rays (`VK_KHR_ray_query`).
+    pub ray_query: bool,
 }
 
 /// A Vulkan device with everything the other objects need from it.
@@ -38,6 +41,7 @@ pub struct Device {
     pub(super) timestamp_period: f64,
     pub(super) timestamp_mask: u64,
     pub(super) has_statistics: bool,
+    pub(super) ray_query: Option<RayQuery>,
     samplers: [vk::Sampler; 2],
     shaders: Mutex<Shaders>,
     allocator: ManuallyDrop<Mutex<Allocator>>,
@@ -81,7 +85,7 @@ impl Device {
             device: raw.clone(),
             physical_device: physical,
             debug_settings: Default::default(),
-            buffer_device_address: false,
+            buffer_device_address: info.ray_query,
             allocation_sizes: Default::default(),
         })
         .map_err(|e| Error::Device(format!("{}: no memory allocator: {e}", info.name)))?;
@@ -97,6 +101,7 @@ impl Device {
             timestamp_period: f64::from(properties.limits.timestamp_period),
             timestamp_mask: if valid_bits == 64 { u64::MAX } else { (1 << valid_bits) - 1 },
             has_statistics,
+            ray_query: RayQuery::new(&instance.raw, physical, &raw, &info),
             samplers: samplers(&raw)?,
             shaders: Mutex::new(shaders),
             allocator: ManuallyDrop::new(Mutex::new(allocator)),
@@ -134,6 +139,13 @@ impl Device {
     /// Largest storage buffer a shader can see, bytes.
     pub fn storage_limit(&self) -> u64 {
         u64::from(self.limits.max_storage_buffer_range)
+    }
+
+    /// Where a buffer lies; only on devices with ray query.
+    pub(super) fn address(&self, buffer: vk::Buffer) -> vk::DeviceAddress {
+        let info = vk::BufferDeviceAddressInfo::default().buffer(buffer);
+        // SAFETY: the buffer is of this device, which gives all that builds read an address.
+        unsafe { self.raw.get_buffer_device_address(&info) }
     }
 
     pub(super) fn offset_alignment(&self) -> u64 {
@@ -283,20 +295,31 @@ fn create(
         .fragment_stores_and_atomics(true)
         .independent_blend(true)
         .pipeline_statistics_query(has_statistics);
-    let mut use12 = vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true);
+    let mut use12 = vk::PhysicalDeviceVulkan12Features::default()
+        .host_query_reset(true)
+        .buffer_device_address(info.ray_query);
     let mut use13 = vk::PhysicalDeviceVulkan13Features::default()
         .dynamic_rendering(true)
         .synchronization2(true);
     let queues = [vk::DeviceQueueCreateInfo::default()
         .queue_family_index(queue_family)
         .queue_priorities(&[1.0])];
-    let names = [push.as_ptr()];
-    let create = vk::DeviceCreateInfo::default()
+    let mut structures =
+        vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default().acceleration_structure(true);
+    let mut queries = vk::PhysicalDeviceRayQueryFeaturesKHR::default().ray_query(true);
+    let mut names = vec![push.as_ptr()];
+    if info.ray_query {
+        names.extend(ray_query::EXTENSIONS.map(std::ffi::CStr::as_ptr));
+    }
+    let mut create = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(&names)
         .enabled_features(&base)
         .push_next(&mut use12)
         .push_next(&mut use13);
+    if info.ray_query {
+        create = create.push_next(&mut structures).push_next(&mut queries);
+    }
     // SAFETY: every pointer in `create` outlives the call; features and extension were checked.
     let device = unsafe { instance.raw.create_device(physical, &create, None) }
         .map_err(|e| Error::Device(format!("{}: vkCreateDevice: {e}", info.name)))?;

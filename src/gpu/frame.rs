@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use ash::vk;
 
+use super::acceleration::INSTANCE_ALIGNMENT;
 use super::buffer::Buffer;
 use super::command::{allocate_commands, create_pool, submit_and_wait};
 use super::pass::Pass;
@@ -133,7 +134,7 @@ impl Frame {
     /// Copy a small array to where shaders of this frame can read it.
     pub fn upload<T: bytemuck::Pod>(&mut self, data: &[T]) -> Result<Slice> {
         let bytes: &[u8] = bytemuck::cast_slice(data);
-        let alignment = self.device.offset_alignment();
+        let alignment = self.device.offset_alignment().max(INSTANCE_ALIGNMENT);
         let offset = self.used.next_multiple_of(alignment);
         // Vulkan binds no empty range.
         let length = (bytes.len() as u64).max(16);

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use ash::{ext, vk};
 
-use super::DeviceInfo;
+use super::{DeviceInfo, ray_query};
 use crate::error::{Error, Result};
 
 const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
@@ -111,6 +111,7 @@ impl Instance {
                 vk::api_version_patch(api)
             ),
             is_software: base.device_type == vk::PhysicalDeviceType::CPU,
+            ray_query: ray_query::is_offered(&self.raw, device),
         }
     }
 }

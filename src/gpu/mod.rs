@@ -4,6 +4,7 @@
 //! two passes, and each pass is timed. Objects hold the [`Device`] they came from and free
 //! themselves on drop; a frame's submit waits, so nothing is freed while in use.
 
+mod acceleration;
 mod buffer;
 mod command;
 mod device;
@@ -17,8 +18,10 @@ pub(crate) mod layout;
 mod pass;
 mod pipeline;
 mod profiler;
+mod ray_query;
 mod shader;
 
+pub use acceleration::{Acceleration, MeshTriangles, Placement};
 pub use buffer::{Buffer, Slice};
 pub use device::{Device, DeviceInfo};
 pub use draw::{Draw, Load};

@@ -1,4 +1,5 @@
-//! A pass: a pipeline and what it binds by name. How much of it runs is in `dispatch` and `draw`.
+//! A pass: a pipeline and what it binds by name. How much of it runs is in `dispatch` and `draw`;
+//! `acceleration` has the builds.
 
 use std::sync::Arc;
 
@@ -6,13 +7,25 @@ use ash::vk;
 
 use super::draw::Load;
 use super::pipeline::{Owner, descriptor_type};
-use super::{BindingKind, Buffer, ComputePipeline, Frame, GraphicsPipeline, Image, Sampler, Slice};
+use super::{
+    Acceleration, BindingKind, Buffer, ComputePipeline, Frame, GraphicsPipeline, Image, Sampler,
+    Slice,
+};
 use crate::error::{Error, Result};
 
 enum Resource<'f> {
     Image { image: &'f Image, written: bool },
     Slice(Slice),
     Sampler(Sampler),
+    Structure(vk::AccelerationStructureKHR),
+}
+
+/// The Vulkan description of one binding: the part its kind asks for, the rest empty.
+#[derive(Default)]
+struct Description {
+    buffer: [vk::DescriptorBufferInfo; 1],
+    image: [vk::DescriptorImageInfo; 1],
+    structure: [vk::AccelerationStructureKHR; 1],
 }
 
 struct Bound<'f> {
@@ -30,9 +43,9 @@ pub(super) enum Program<'f> {
     Graphics(&'f GraphicsPipeline),
 }
 
-/// A pass being put together. `over`, `over_pixels`, `indirect`, `draw` and `clear` record it;
-/// errors met on the way come out there.
-#[must_use = "a pass records nothing until over, over_pixels, indirect, draw or clear is called"]
+/// A pass being put together. `over`, `over_pixels`, `indirect`, `draw`, `clear`, `fill`, `build`
+/// and `place` record it; errors met on the way come out there.
+#[must_use = "a pass records nothing until over, draw, clear or another of its ends is called"]
 pub struct Pass<'f> {
     pub(super) frame: &'f mut Frame,
     name: String,
@@ -109,6 +122,21 @@ impl<'f> Pass<'f> {
         self.bind(name, Resource::Sampler(sampler))
     }
 
+    /// What ray queries search: a WGSL `acceleration_structure`.
+    pub fn acceleration(mut self, name: &'static str, structure: &Acceleration) -> Self {
+        match structure.placed() {
+            Ok(levels) => {
+                let top = levels.top();
+                self.frame.keep(levels);
+                self.bind(name, Resource::Structure(top))
+            }
+            Err(what) => {
+                self.error = self.error.take().or(Some(self.wrong(what)));
+                self
+            }
+        }
+    }
+
     /// A uniform struct; its size must be the WGSL struct's.
     pub fn uniform<T: bytemuck::Pod>(mut self, name: &'static str, value: &T) -> Self {
         match self.frame.upload(std::slice::from_ref(value)) {
@@ -156,30 +184,35 @@ impl<'f> Pass<'f> {
                 unknown.name
             )));
         }
-        let mut buffers = Vec::with_capacity(wanted.len());
-        let mut images = Vec::with_capacity(wanted.len());
+        let mut descriptions = Vec::with_capacity(wanted.len());
         for binding in wanted {
             let Some(bound) = self.bound.iter().rev().find(|b| b.name == binding.name) else {
                 return Err(self.wrong(format_args!("`{}` is not bound", binding.name)));
             };
-            let (buffer, image) = self.descriptor(bound, binding.kind)?;
-            buffers.push([buffer]);
-            images.push([image]);
+            descriptions.push(self.describe(bound, binding.kind)?);
         }
+        let mut structures: Vec<_> = descriptions
+            .iter()
+            .map(|d| {
+                vk::WriteDescriptorSetAccelerationStructureKHR::default()
+                    .acceleration_structures(&d.structure)
+            })
+            .collect();
         let writes: Vec<_> = wanted
             .iter()
-            .zip(&buffers)
-            .zip(&images)
-            .map(|((binding, buffer), image)| {
+            .zip(&descriptions)
+            .zip(&mut structures)
+            .map(|((binding, description), structure)| {
                 let kind = descriptor_type(binding.kind);
                 let write = vk::WriteDescriptorSet::default()
                     .dst_binding(binding.number)
                     .descriptor_type(kind);
                 match binding.kind {
                     BindingKind::Uniform { .. } | BindingKind::Buffer { .. } => {
-                        write.buffer_info(buffer)
+                        write.buffer_info(&description.buffer)
                     }
-                    _ => write.image_info(image),
+                    BindingKind::Acceleration => write.descriptor_count(1).push_next(structure),
+                    _ => write.image_info(&description.image),
                 }
             })
             .collect();
@@ -200,14 +233,10 @@ impl<'f> Pass<'f> {
         Ok(())
     }
 
-    /// The Vulkan description of one binding; the half that does not apply stays empty.
-    fn descriptor(
-        &self,
-        bound: &Bound<'f>,
-        kind: BindingKind,
-    ) -> Result<(vk::DescriptorBufferInfo, vk::DescriptorImageInfo)> {
-        let mut buffer = vk::DescriptorBufferInfo::default();
-        let mut image = vk::DescriptorImageInfo::default();
+    fn describe(&self, bound: &Bound<'f>, kind: BindingKind) -> Result<Description> {
+        let mut description = Description::default();
+        let Description { buffer: [buffer], image: [image], structure: [structure] } =
+            &mut description;
         match (&bound.resource, kind) {
             (Resource::Slice(slice), BindingKind::Uniform { bytes }) if bound.uniform => {
                 if slice.bytes != bytes {
@@ -216,21 +245,22 @@ impl<'f> Pass<'f> {
                         bound.name, slice.bytes
                     )));
                 }
-                buffer = buffer.buffer(slice.buffer).offset(slice.offset).range(slice.bytes);
+                *buffer = slice.descriptor();
             }
             (Resource::Slice(slice), BindingKind::Buffer { .. }) if !bound.uniform => {
-                buffer = buffer.buffer(slice.buffer).offset(slice.offset).range(slice.bytes);
+                *buffer = slice.descriptor();
             }
             (
                 &Resource::Image { image: i, .. },
                 BindingKind::Texture { .. } | BindingKind::Storage { .. },
             ) => {
                 let view = i.bound_view(kind).map_err(|e| self.wrong(e))?;
-                image = image.image_view(view).image_layout(vk::ImageLayout::GENERAL);
+                *image = image.image_view(view).image_layout(vk::ImageLayout::GENERAL);
             }
             (&Resource::Sampler(sampler), BindingKind::Sampler) => {
-                image = image.sampler(self.frame.device.sampler(sampler));
+                *image = image.sampler(self.frame.device.sampler(sampler));
             }
+            (&Resource::Structure(raw), BindingKind::Acceleration) => *structure = raw,
             _ => {
                 return Err(self.wrong(format_args!(
                     "`{}` is bound as something else than {kind:?}",
@@ -238,7 +268,7 @@ impl<'f> Pass<'f> {
                 )));
             }
         }
-        Ok((buffer, image))
+        Ok(description)
     }
 
     /// Record the pass between label and timestamps, then copy out what is to be dumped.

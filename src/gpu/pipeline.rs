@@ -27,6 +27,7 @@ pub(super) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
         BindingKind::Texture { .. } => vk::DescriptorType::SAMPLED_IMAGE,
         BindingKind::Storage { .. } => vk::DescriptorType::STORAGE_IMAGE,
         BindingKind::Sampler => vk::DescriptorType::SAMPLER,
+        BindingKind::Acceleration => vk::DescriptorType::ACCELERATION_STRUCTURE_KHR,
     }
 }
 
@@ -89,6 +90,9 @@ struct Module<'a> {
 
 impl<'a> Module<'a> {
     fn new(device: &'a Device, name: &str, compiled: &Compiled) -> Result<Self> {
+        if compiled.bindings.iter().any(|b| b.kind == BindingKind::Acceleration) {
+            device.require_ray_query()?;
+        }
         let info = vk::ShaderModuleCreateInfo::default().code(&compiled.spirv);
         // SAFETY: naga validated the module and wrote the SPIR-V.
         let raw = unsafe { device.raw.create_shader_module(&info, None) }

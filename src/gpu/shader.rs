@@ -38,6 +38,8 @@ pub enum BindingKind {
         array: bool,
     },
     Sampler,
+    /// What ray queries search; only devices with ray query have it.
+    Acceleration,
 }
 
 /// A shader variable to bind: its WGSL name, its number in group 0, its kind.
@@ -186,11 +188,14 @@ impl Shaders {
     }
 }
 
-/// What the device is required to have, and no more: a shader beyond it fails here, by name.
+/// What the device is required to have, and no more: a shader beyond it fails here, by name. Only
+/// ray queries are left to [`Device::require_ray_query`](super::Device::require_ray_query), when a
+/// pipeline is made.
 fn capabilities() -> Capabilities {
     Capabilities::PRIMITIVE_INDEX
         | Capabilities::IMMEDIATES
         | Capabilities::SHADER_FLOAT16_IN_FLOAT32
+        | Capabilities::RAY_QUERY
 }
 
 fn explain(composer: &Composer, error: &ComposerError) -> Error {
@@ -213,8 +218,10 @@ fn write_spirv(module: &naga::Module, info: &ModuleInfo) -> Result<Vec<u32>, Str
         // Native Vulkan clip space; names for validation messages and captures.
         flags: spv::WriterFlags::DEBUG,
         fake_missing_bindings: false,
-        // Both cost time that belongs to no paper's method; every loop here ends by itself.
+        // These cost time that belongs to no paper's method; every loop here ends by itself, every
+        // ray query is initialised.
         force_loop_bounding: false,
+        ray_query_initialization_tracking: false,
         zero_initialize_workgroup_memory: spv::ZeroInitializeWorkgroupMemoryMode::None,
         ..Default::default()
     };
@@ -263,6 +270,9 @@ fn kind_of(module: &naga::Module, variable: &naga::GlobalVariable) -> Option<Bin
             })
         }
         (AddressSpace::Handle, TypeInner::Sampler { .. }) => Some(BindingKind::Sampler),
+        (AddressSpace::Handle, TypeInner::AccelerationStructure { .. }) => {
+            Some(BindingKind::Acceleration)
+        }
         _ => None,
     }
 }
