@@ -31,8 +31,8 @@ struct Hit {
 
 // The nearest triangle a ray meets. The direction has unit length.
 //
-// No triangle is opaque, so each on the way is a candidate, in any order and some perhaps twice;
-// the search goes on behind those that are not confirmed.
+// Each triangle of an object that rays start on is a candidate, in any order and some perhaps twice;
+// the search goes on behind those that are not confirmed. Other objects are opaque: met at once.
 fn trace(origin: vec3<f32>, direction: vec3<f32>, start: Start) -> Hit {
     var query: ray_query;
     let ray = RayDesc(RAY_FLAG_NONE, EVERY_PLACEMENT, 0.0, FAR, origin, direction);

@@ -1,10 +1,9 @@
 //! Acceleration structures: what the device's own ray queries search.
 //!
 //! Two levels, as Vulkan has them: one structure a mesh, built once from its triangles in object
-//! space, and one over the meshes where they stand, built anew when they move. No face is culled
-//! and no triangle is opaque, so a shader sees every candidate and accepts or rejects it by its own
-//! rule (a mirrored ray must not meet the triangle it starts on); the ray flag for opaque triangles
-//! turns that off.
+//! space, and one over the meshes where they stand, built anew when they move. No face is culled.
+//! Unless a placement is opaque, a shader sees every candidate and accepts or refuses it by its own
+//! rule: a mirrored ray must not meet the triangle it starts on.
 
 use std::slice;
 use std::sync::Arc;
@@ -49,6 +48,9 @@ pub struct Placement {
     pub index: u32,
     /// A ray meets the placement where its `cull_mask` has a bit of this; 0 hides it.
     pub mask: u8,
+    /// Rays meet its triangles without asking the shader, which is quicker: for what no ray
+    /// starts on.
+    pub opaque: bool,
 }
 
 /// `VkAccelerationStructureInstanceKHR`.
@@ -169,7 +171,7 @@ impl Acceleration {
     }
 
     fn entry(&self, placement: &Placement) -> Result<Entry, String> {
-        let &Placement { mesh, pose, index, mask } = placement;
+        let &Placement { mesh, pose, index, mask, opaque } = placement;
         let meshes = &self.levels.meshes;
         let level = meshes.get(mesh).ok_or_else(|| {
             format!("`{}` has no mesh {mesh} to place, it has {}", self.name, meshes.len())
@@ -180,7 +182,10 @@ impl Acceleration {
         let [x, y, z, _] = Mat4::from(pose).transpose().to_cols_array_2d();
         // Nothing to flip: corners clockwise in left-handed coordinates, Vulkan's front, run
         // counter-clockwise in ours.
-        let flags = vk::GeometryInstanceFlagsKHR::TRIANGLE_FACING_CULL_DISABLE;
+        let mut flags = vk::GeometryInstanceFlagsKHR::TRIANGLE_FACING_CULL_DISABLE;
+        if opaque {
+            flags |= vk::GeometryInstanceFlagsKHR::FORCE_OPAQUE;
+        }
         Ok(Entry {
             rows: [x, y, z],
             index_and_mask: index | u32::from(mask) << 24,
