@@ -7,34 +7,64 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec4, Vec4Swizzles};
-use gpu_support::{Session, engine, frame, options, tracer};
-use mirrorbench::experiment::engine::Fallback;
+use gpu_support::{Session, engine, frame, methods, options, tracer};
+use mirrorbench::experiment::engine::{Engine, Fallback, FrameTimes, RunOptions};
 use mirrorbench::gpu::{Buffer, ComputePipeline, Frame};
 use mirrorbench::measure;
+use mirrorbench::methods::Case;
 use mirrorbench::scene::{self, FrameRecord, Lobe, ReflectionRecord, Scene, Source};
 use mirrorbench::stages::{GpuScene, SceneTree, TreeLayout, TreeUpdate};
 use mirrorbench::truth::Hit;
 
+/// Share of the pixels of two frames of a scene that are half a pixel off.
+fn bad_share(session: &Session, name: &str, case: &str, size: [u32; 2]) -> f64 {
+    let scene = scene::load(name).unwrap();
+    let mut engine = engine(session, &scene, case, &options(size));
+    let (mut bad, mut pixels) = (0.0, 0.0);
+    for at in [0, scene.frames / 2] {
+        let moment = scene.at(at);
+        let (tested, times) = engine.frame(&moment, true).unwrap();
+        let tracer = tracer(&scene, &moment);
+        let (accuracy, _) = measure::accuracy(&tracer.frame(size), &tested, &tracer).unwrap();
+        let count = tested.reflector_pixels().len() as f64;
+        bad += accuracy.bad_share.half * count;
+        pixels += count;
+        let rays = times.counters.iter().find(|(name, _)| name == "rays").unwrap().1;
+        assert!(rays as f64 >= count, "{name}: {rays} rays for {count} pixels");
+    }
+    println!("{name}: {bad} of {pixels} pixels");
+    bad / pixels
+}
+
+/// Nothing but what rounding makes of edges.
+const MOST: f64 = 5e-4;
+
 #[test]
 fn it_is_the_truth_on_every_shipped_scene() {
     let session = Session::open();
-    let size = [640, 400];
-    for name in scene::list().unwrap().into_iter().map(|(name, _)| name) {
-        let scene = scene::load(&name).unwrap();
-        let mut engine = engine(&session, &scene, "ray-traced", &options(size));
-        let (mut bad, mut pixels) = (0.0, 0.0);
-        for at in [0, scene.frames / 2] {
-            let moment = scene.at(at);
-            let (tested, times) = engine.frame(&moment, true).unwrap();
-            let tracer = tracer(&scene, &moment);
-            let (accuracy, _) = measure::accuracy(&tracer.frame(size), &tested, &tracer).unwrap();
-            let count = tested.reflector_pixels().len() as f64;
-            bad += accuracy.bad_share.half * count;
-            pixels += count;
-            assert!(times.counters.iter().all(|(_, n)| *n as f64 >= count), "{name}: {times:?}");
-        }
-        assert!(bad / pixels < 5e-4, "{name}: {bad} of {pixels} pixels are half a pixel off");
+    for (name, _) in scene::list().unwrap() {
+        let bad = bad_share(&session, &name, "ray-traced", [640, 400]);
+        assert!(bad < MOST, "{name}: {bad}");
     }
+}
+
+#[test]
+fn the_devices_own_rays_are_the_truth_too_or_are_refused() {
+    let session = Session::open();
+    let case = "ray-traced:backend=query";
+    if session.device().has_ray_query() {
+        for name in ["columns", "two-spheres", "hall-of-mirrors", "glass-sphere", "teapot"] {
+            let bad = bad_share(&session, name, case, [320, 200]);
+            assert!(bad < 4.0 * MOST, "{name}: {bad}");
+        }
+        return;
+    }
+    let scene = scene::load("columns").unwrap();
+    let parsed = Case::parse(case, &methods()).unwrap();
+    let made = Engine::new(session.device(), &scene, &parsed, &methods(), &options([64, 64]));
+    let error = made.err().expect("a device without ray queries refuses them");
+    assert_eq!(error.exit_code(), 3);
+    assert!(error.to_string().contains("backend=software"), "{error}");
 }
 
 #[test]
@@ -46,9 +76,8 @@ fn fitting_the_tree_to_what_moved_is_as_good_as_building_it() {
         engine.frame(&scene.at(0), true).unwrap();
         engine.frame(&scene.at(40), false).unwrap()
     });
-    let names = |times: &mirrorbench::experiment::engine::FrameTimes| {
-        times.prepare.iter().map(|pass| pass.name.clone()).collect::<Vec<_>>()
-    };
+    let names =
+        |times: &FrameTimes| times.prepare.iter().map(|pass| pass.name.clone()).collect::<Vec<_>>();
     assert_eq!(names(&rebuilt.1), ["ray-traced/build"]);
     assert!(names(&refit.1).contains(&"ray-traced/refit".to_owned()), "{:?}", names(&refit.1));
     // The moved corners are placed by the processor in one and by the GPU in the other.
@@ -69,10 +98,7 @@ fn the_fallback_traces_what_a_method_leaves() {
         let size = [96, 64];
         let traced = frame(&session, &scene, "ray-traced", size, 5);
         let mended = |case: &str| {
-            let options = mirrorbench::experiment::engine::RunOptions {
-                fallback: Fallback::Ray,
-                ..options(size)
-            };
+            let options = RunOptions { fallback: Fallback::Ray, ..options(size) };
             engine(&session, &scene, case, &options).frame(&scene.at(5), true).unwrap()
         };
         let (all, times) = mended("none");

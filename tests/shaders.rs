@@ -10,7 +10,9 @@ fn every_shader_compiles() {
     let mut wrong = Vec::new();
     for file in &files {
         let parts = [("TREE_PARTS", 1), ("NODES_OF_PART", 100), ("SLOTS_OF_PART", 50)];
-        for defines in [&[][..], &[("RECORD_FULL", 1)], &[("GLASS", 1)], &parts] {
+        for defines in
+            [&[][..], &[("RECORD_FULL", 1)], &[("GLASS", 1)], &[("RAY_QUERY", 1)], &parts]
+        {
             if let Err(error) = shaders.check(file, defines) {
                 wrong.push(error.to_string());
             }

@@ -3,37 +3,18 @@
 enable wgpu_ray_query;
 #define_import_path bindings::structure
 
+#import bindings::rays::{FAR, RayHit, Start, ray_work}
+
 @group(0) @binding(48) var scene_structure: acceleration_structure;
 
-// Farther than anything.
-const FAR: f32 = 3.0e38;
-
 const EVERY_PLACEMENT: u32 = 0xffu;
-
-// The surface a ray starts on. It never meets the triangle it starts on, and meets its own object
-// only by the faces it can come to: front ones outside, back ones inside.
-struct Start {
-    object: u32,
-    triangle: u32,
-    outside: bool,
-}
-
-// Where a ray meets a triangle.
-struct Hit {
-    // `FAR` where it meets none.
-    distance: f32,
-    object: u32,
-    triangle: u32,
-    // Weights of the second and third corner.
-    weights: vec2<f32>,
-    front: bool,
-}
 
 // The nearest triangle a ray meets. The direction has unit length.
 //
 // Each triangle of an object that rays start on is a candidate, in any order and some perhaps twice;
 // the search goes on behind those that are not confirmed. Other objects are opaque: met at once.
-fn trace(origin: vec3<f32>, direction: vec3<f32>, start: Start) -> Hit {
+fn trace(origin: vec3<f32>, direction: vec3<f32>, start: Start) -> RayHit {
+    ray_work.rays += 1u;
     var query: ray_query;
     let ray = RayDesc(RAY_FLAG_NONE, EVERY_PLACEMENT, 0.0, FAR, origin, direction);
     rayQueryInitialize(&query, scene_structure, ray);
@@ -48,8 +29,8 @@ fn trace(origin: vec3<f32>, direction: vec3<f32>, start: Start) -> Hit {
     }
     let hit = rayQueryGetCommittedIntersection(&query);
     if hit.kind != RAY_QUERY_INTERSECTION_TRIANGLE {
-        return Hit(FAR, 0u, 0u, vec2(0.0), false);
+        return RayHit(FAR, 0u, 0u, vec2(0.0), false);
     }
     let object = hit.instance_custom_data;
-    return Hit(hit.t, object, hit.primitive_index, hit.barycentrics, hit.front_face);
+    return RayHit(hit.t, object, hit.primitive_index, hit.barycentrics, hit.front_face);
 }

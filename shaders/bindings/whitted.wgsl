@@ -1,10 +1,16 @@
-// Chains of mirrors and glass followed through the scene's tree (Whitted 1980).
+// Chains of mirrors and glass followed by rays (Whitted 1980): through the scene's tree, or by the
+// device's own ray queries.
 // Rust twin: truth/chain.rs, whose recursion is a stack of rays here.
 #define_import_path bindings::whitted
 
 #import bindings::departure::{depart, is_heaviest}
 #import bindings::scene::{environment, materials, objects, shade}
-#import bindings::tree::{FAR, Start, surface_point, trace}
+#import bindings::rays::{FAR, Start, surface_point}
+#ifdef RAY_QUERY
+#import bindings::structure::trace
+#else
+#import bindings::tree::trace
+#endif
 #import bindings::view::MirrorPoint
 #import common::record::{Chain, NO_OBJECT, STATUS_ENVIRONMENT, STATUS_FOUND, extended_trace, trace_of}
 

@@ -1,6 +1,6 @@
-// Rays traced from every reflector pixel through the scene's tree, to any order (Whitted 1980).
+// Rays traced from every reflector pixel, to any order (Whitted 1980).
 #import bindings::record::{count, write_record}
-#import bindings::tree::tree_work
+#import bindings::rays::ray_work
 #import bindings::view::{mirror_point, pixel_count}
 #import bindings::whitted::traced_chain
 
@@ -18,8 +18,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     write_record(at.pixel, traced_chain(at, bounces));
 #ifdef RECORD_FULL
-    count(0u, tree_work.rays);
-    count(1u, tree_work.nodes);
-    count(2u, tree_work.triangles);
+    count(0u, ray_work.rays);
+    count(1u, ray_work.nodes);
+    count(2u, ray_work.triangles);
 #endif
 }

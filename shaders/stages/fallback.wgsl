@@ -5,7 +5,7 @@
 #import bindings::view::{mirror_point, pixel_count}
 #import common::record::{ANSWER_GIVEN, SOURCE_FALLBACK_ENVIRONMENT, SOURCE_FALLBACK_RAY, environment_chain}
 #ifdef FALLBACK_RAY
-#import bindings::tree::tree_work
+#import bindings::rays::ray_work
 #import bindings::whitted::traced_chain
 
 // Longest chain of reflectors followed.
@@ -43,9 +43,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 #ifdef RECORD_FULL
     count(FILLED, 1u);
 #ifdef FALLBACK_RAY
-    count(RAYS, tree_work.rays);
-    count(NODES, tree_work.nodes);
-    count(TRIANGLES, tree_work.triangles);
+    count(RAYS, ray_work.rays);
+    count(NODES, ray_work.nodes);
+    count(TRIANGLES, ray_work.triangles);
 #endif
 #endif
 }

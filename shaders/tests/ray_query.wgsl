@@ -1,6 +1,7 @@
 // Traces an array of rays, for the test that holds ray queries against the tree on the CPU.
 
-#import bindings::structure::{Start, trace}
+#import bindings::rays::Start
+#import bindings::structure::trace
 
 struct TestRay {
     origin: vec3<f32>,

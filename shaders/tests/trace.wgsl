@@ -1,5 +1,6 @@
 // Traces rays through the scene's tree, for the test that holds it against the processor's.
-#import bindings::tree::{FAR, Start, surface_point, trace}
+#import bindings::rays::{FAR, Start, surface_point}
+#import bindings::tree::trace
 
 // Origin; direction; object, triangle and side of the surface it starts on, as numbers.
 struct Ray {

@@ -1,16 +1,19 @@
 //! Rays traced from every reflector pixel through a tree over the whole scene, to any order: what a
 //! practitioner of today does, and so the rival every other method stands beside.
 //!
-//! The tree is built on the processor (obvhs) and followed in a compute shader, on any GPU.
+//! In software the tree is built on the processor (obvhs) and followed in a compute shader, on any
+//! GPU; with `backend=query` the device builds and searches a structure of its own.
 
 use super::{Changes, Family, Kind, MethodInfo, Param, ReflectionMethod, Setup, Want};
 use crate::error::Result;
 use crate::gpu::{ComputePipeline, Frame};
-use crate::stages::{GpuScene, ReflectionRecord, SceneTree, TreeLayout, TreeUpdate, View};
+use crate::stages::{
+    GpuScene, ReflectionRecord, SceneStructure, SceneTree, TreeLayout, TreeUpdate, View,
+};
 
 pub const INFO: MethodInfo = MethodInfo {
     id: "ray-traced",
-    title: "Ray tracing (software traversal in a compute shader)",
+    title: "Ray tracing: software traversal in a compute shader, or the device's ray queries",
     paper: "Whitted 1980; tree by PLOC (Meister & Bittner 2018) as built by obvhs",
     family: Family::RayTracing,
     depends: Changes { objects: true, reflectors: true, shading: false },
@@ -26,10 +29,17 @@ pub const INFO: MethodInfo = MethodInfo {
             doc: "longest chain of mirrors followed; 0 takes the scene's",
         },
         Param {
+            name: "backend",
+            kind: Kind::Choice(&["software", "query"]),
+            defaults: &["software"],
+            needs: None,
+            doc: "who follows the rays: a compute shader, or the device (VK_KHR_ray_query)",
+        },
+        Param {
             name: "update",
             kind: Kind::Choice(&["refit", "rebuild"]),
             defaults: &["refit"],
-            needs: None,
+            needs: Some(("backend", &["software"])),
             doc: "when objects move: fit the tree's boxes on the GPU, or build it anew",
         },
     ],
@@ -46,31 +56,46 @@ pub const INFO: MethodInfo = MethodInfo {
     new: Some(new),
 };
 
+/// Who follows the rays.
+enum Backend {
+    Software(SceneTree),
+    Query(SceneStructure),
+}
+
 struct RayTraced {
-    tree: SceneTree,
+    backend: Backend,
     reflect: ComputePipeline,
     bounces: u32,
 }
 
 fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
-    let scene = &setup.scene.scene;
-    let layout = TreeLayout::new(scene, setup.device.storage_limit())?;
+    let (device, scene) = (setup.device, &setup.scene.scene);
     let mut defines = setup.mode.defines();
-    defines.extend(layout.defines());
     defines.extend(setup.scene.defines());
-    let rebuild = setup.values.is("update", "rebuild");
-    let update = if rebuild { TreeUpdate::Rebuild } else { TreeUpdate::Refit };
+    let backend = if setup.values.is("backend", "query") {
+        defines.push(("RAY_QUERY", 1));
+        Backend::Query(SceneStructure::new(device)?)
+    } else {
+        let layout = TreeLayout::new(scene, device.storage_limit())?;
+        defines.extend(layout.defines());
+        let rebuild = setup.values.is("update", "rebuild");
+        let update = if rebuild { TreeUpdate::Rebuild } else { TreeUpdate::Refit };
+        Backend::Software(SceneTree::new(device, layout, update)?)
+    };
     let bounces = setup.values.u32("bounces");
     Ok(Box::new(RayTraced {
-        tree: SceneTree::new(setup.device, layout, update)?,
-        reflect: ComputePipeline::new(setup.device, "ray_traced/reflect.wgsl", &defines)?,
+        backend,
+        reflect: ComputePipeline::new(device, "ray_traced/reflect.wgsl", &defines)?,
         bounces: if bounces == 0 { scene.bounces } else { bounces },
     }))
 }
 
 impl ReflectionMethod for RayTraced {
     fn prepare(&mut self, frame: &mut Frame, scene: &GpuScene, _: &Want) -> Result<()> {
-        self.tree.prepare(frame, scene, "ray-traced")
+        match &mut self.backend {
+            Backend::Software(tree) => tree.prepare(frame, scene, "ray-traced"),
+            Backend::Query(structure) => structure.prepare(frame, scene, "ray-traced"),
+        }
     }
 
     fn reflect(
@@ -82,7 +107,11 @@ impl ReflectionMethod for RayTraced {
     ) -> Result<()> {
         view.list_pixels(frame, scene, view.reflectors)?;
         let pass = frame.pass("ray-traced/reflect").compute(&self.reflect);
-        let pass = record.bind(view.bind(scene.bind(self.tree.bind(pass))));
+        let pass = match &self.backend {
+            Backend::Software(tree) => tree.bind(pass),
+            Backend::Query(structure) => structure.bind(pass),
+        };
+        let pass = record.bind(view.bind(scene.bind(pass)));
         pass.uniform("bounces", &self.bounces).indirect(&view.footprint.pixels)
     }
 }

@@ -9,6 +9,7 @@ mod fallback;
 mod footprint;
 mod record;
 mod scene;
+mod scene_structure;
 mod scene_tree;
 mod view;
 
@@ -19,5 +20,6 @@ pub use fallback::{FallbackStage, Filling};
 pub use footprint::Footprint;
 pub use record::{RecordMode, ReflectionRecord};
 pub use scene::GpuScene;
+pub use scene_structure::SceneStructure;
 pub use scene_tree::{SceneTree, TreeLayout, TreeUpdate};
 pub use view::{CameraUniform, View};

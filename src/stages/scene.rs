@@ -7,7 +7,7 @@ use glam::{Affine3A, Vec3};
 use half::f16;
 
 use crate::error::Result;
-use crate::gpu::{Buffer, Device, Draw, Frame, Pass, Slice};
+use crate::gpu::{Buffer, Device, Draw, Frame, MeshTriangles, Pass, Slice};
 use crate::scene::{Environment, Material, Moment, ObjectId, Pattern, Scene};
 
 /// WGSL `Vertex` of `shaders/bindings/scene.wgsl`; object space.
@@ -85,7 +85,7 @@ pub struct GpuScene {
     images: Buffer,
     texels: Buffer,
     light: LightUniform,
-    /// First index and index count of each object.
+    /// First index and index count of each mesh.
     ranges: Vec<(u32, u32)>,
     moment: Moment,
     /// This frame's poses, uploaded by [`GpuScene::pose`].
@@ -98,7 +98,7 @@ impl GpuScene {
     pub fn new(device: &Arc<Device>, scene: &Arc<Scene>) -> Result<GpuScene> {
         let mut vertices = Vec::with_capacity(scene.meshes.iter().map(|m| m.positions.len()).sum());
         let mut indices: Vec<u32> = Vec::new();
-        let mut mesh_ranges = Vec::with_capacity(scene.meshes.len());
+        let mut ranges = Vec::with_capacity(scene.meshes.len());
         for mesh in &scene.meshes {
             let base = vertices.len() as u32;
             let first = indices.len() as u32;
@@ -110,7 +110,7 @@ impl GpuScene {
                 v: uv.y,
             }));
             indices.extend(mesh.triangles.iter().flatten().map(|i| i + base));
-            mesh_ranges.push((first, indices.len() as u32 - first));
+            ranges.push((first, indices.len() as u32 - first));
         }
         let materials: Vec<_> = scene.materials.iter().map(material_entry).collect();
         let (images, texels) = image_entries(scene);
@@ -121,7 +121,7 @@ impl GpuScene {
             images: Buffer::with_data(device, "scene images", &images)?,
             texels: Buffer::with_data(device, "scene texels", &texels)?,
             light: light_uniform(scene),
-            ranges: scene.objects.iter().map(|o| mesh_ranges[o.mesh]).collect(),
+            ranges,
             moment: scene.at(0),
             objects: None,
             scene: scene.clone(),
@@ -158,7 +158,7 @@ impl GpuScene {
                     material: self.scene.objects[index].material as u32,
                     rank,
                     selected: u32::from(selected.contains(&id)),
-                    first_index: self.ranges[index].0,
+                    first_index: self.range(id).0,
                 };
                 rank += u32::from(self.scene.is_reflector(id));
                 entry
@@ -188,6 +188,23 @@ impl GpuScene {
         }
     }
 
+    /// First index and index count of an object.
+    fn range(&self, object: ObjectId) -> (u32, u32) {
+        self.ranges[self.scene.objects[object as usize].mesh]
+    }
+
+    /// The triangles of each mesh, in object space.
+    pub fn meshes(&self) -> Vec<MeshTriangles<'_>> {
+        let mesh = |&(first_index, index_count): &(u32, u32)| MeshTriangles {
+            vertices: &self.vertices,
+            stride: size_of::<Vertex>() as u32,
+            indices: &self.indices,
+            first_index,
+            index_count,
+        };
+        self.ranges.iter().map(mesh).collect()
+    }
+
     /// Shader definitions of passes that follow light through the scene.
     pub fn defines(&self) -> Vec<(&'static str, u32)> {
         if self.scene.refracts() { vec![("GLASS", 1)] } else { Vec::new() }
@@ -195,8 +212,7 @@ impl GpuScene {
 
     /// Draw the objects a filter lets through; the instance index is the object id.
     pub fn draw(&self, draw: &mut Draw, wanted: impl Fn(ObjectId) -> bool) {
-        for (index, _) in self.ranges.iter().enumerate() {
-            let object = index as ObjectId;
+        for object in 0..self.scene.objects.len() as ObjectId {
             if wanted(object) {
                 self.draw_object(draw, object);
             }
@@ -204,7 +220,7 @@ impl GpuScene {
     }
 
     pub fn draw_object(&self, draw: &mut Draw, object: ObjectId) {
-        let (first, count) = self.ranges[object as usize];
+        let (first, count) = self.range(object);
         draw.indexed(&self.indices, first, count, object);
     }
 }
