@@ -143,6 +143,53 @@ fn the_truth_is_rendered_compared_and_recorded() {
 }
 
 #[test]
+fn a_path_is_followed_and_its_frames_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let bench = ["bench", "--scene", "columns", "--case", "truth", "--size", "64x48"];
+    let bench = [&bench[..], &["--truth-frames", "1", "--frames", "3..7", "--out", out]].concat();
+    let row = stdout(&[&bench[..], &["--path", "--json"]].concat());
+    let row: serde_json::Value = serde_json::from_str(&row).unwrap();
+    let stability = &row["stability"];
+    assert_eq!(stability["jitter_px"], serde_json::json!({"median": 0.0, "p95": 0.0}));
+    assert_eq!((&stability["pops"], &stability["frames"]), (&0.into(), &serde_json::json!([3, 6])));
+    assert!(stability["covered"].as_f64().unwrap() > 0.5, "{stability}");
+    assert!(stability["speed_px"].as_f64().unwrap() > 0.0, "{stability}");
+    let arrays = format!("{}.frames.json", row["run"].as_str().unwrap());
+    let arrays = fs::read_to_string(Path::new(out).join(arrays)).unwrap();
+    let arrays: serde_json::Value = serde_json::from_str(&arrays).unwrap();
+    let frames = arrays["path"].as_array().unwrap();
+    assert!(
+        frames
+            .iter()
+            .map(|frame| &frame["frame"])
+            .eq([3, 4, 5, 6].map(serde_json::Value::from).iter())
+    );
+    assert!(frames[0]["jitter_px"].is_null() && frames[3]["jitter_px"].is_null());
+    assert_eq!(frames[1]["jitter_px"]["p95"], 0.0);
+    assert_eq!(frames[2]["popping"], 0.0);
+
+    let text = stdout(&[&bench[..], &["--path"]].concat());
+    assert!(text.contains("JITTER PX") && text.contains("POPS"), "{text}");
+    let still = stdout(&[&bench[..], &["--json"]].concat());
+    let still: serde_json::Value = serde_json::from_str(&still).unwrap();
+    assert!(still["stability"].is_null());
+    assert_ne!(still["run"], row["run"], "a path is an input");
+}
+
+#[test]
+fn a_path_of_two_frames_ends_in_2() {
+    let bench = ["bench", "--scene", "columns", "--case", "truth", "--path", "--frames", "0..2"];
+    refused(&bench, 2, &["--path", "columns", "at least 3"]);
+    // A scene that stands still has one frame.
+    refused(
+        &["bench", "--scene", "lecture", "--case", "truth", "--path"],
+        2,
+        &["valid: at least 3"],
+    );
+}
+
+#[test]
 fn a_pixel_is_probed_in_truth() {
     let probe = ["probe", "--scene", "columns", "--size", "64x48", "--case", "truth", "--json"];
     let scene = scene::load("columns").unwrap();

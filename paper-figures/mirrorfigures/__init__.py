@@ -7,6 +7,6 @@ writes `paper-figures/out/<paper>/<figure>.{png,pdf,json}`. `page` makes the ind
 
 from .exr import Frame, read_frame
 from .figure import Figure, main
-from .runs import Run, bench, render
+from .runs import Run, bench, follow, render
 
-__all__ = ["Figure", "Frame", "Run", "bench", "main", "read_frame", "render"]
+__all__ = ["Figure", "Frame", "Run", "bench", "follow", "main", "read_frame", "render"]

@@ -1,4 +1,4 @@
-"""Charts of rows: speed against accuracy."""
+"""Charts of rows: speed against accuracy; steadiness along a path."""
 
 import matplotlib.pyplot as plt
 from matplotlib.ticker import LogLocator, NullFormatter
@@ -8,6 +8,10 @@ from .figure import QUIET
 # Okabe & Ito's palette: told apart by the colour-blind too.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 MARKERS = "osD^vP"
+GRID = "#e7eaee"
+
+POP_SHARE = 0.005
+"""A frame in which more of the points jump is a pop: the binary's threshold."""
 
 
 def speed_against_accuracy(rows_by_scene: dict[str, list[dict]], floor: str = "none") -> plt.Figure:
@@ -31,7 +35,7 @@ def speed_against_accuracy(rows_by_scene: dict[str, list[dict]], floor: str = "n
                 _point(axis, row, *style[row["case"]])
         size = "x".join(str(n) for n in rows[0]["size"])
         axis.set(title=f"{scene}, {size}", xscale="log", ylim=(-4, 104), xlabel="frame, GPU ms (log)")
-        axis.grid(True, which="both", color="#e7eaee", lw=0.6)
+        axis.grid(True, which="both", color=GRID, lw=0.6)
         axis.margins(x=0.4)
         axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.xaxis.set_major_formatter("{x:g}")
@@ -42,6 +46,35 @@ def speed_against_accuracy(rows_by_scene: dict[str, list[dict]], floor: str = "n
     ]
     handles.append(plt.Line2D([], [], color=QUIET, ls=":", label="frame without reflections"))
     plot.legend(handles=handles, loc="lower center", ncols=len(handles), bbox_to_anchor=(0.5, 0.03))
+    return plot
+
+
+def steadiness(paths_by_case: dict[str, list[dict]]) -> plt.Figure:
+    """Jitter and popping share over the frames of a path, a colour a case."""
+    plot, (jitter, popping) = plt.subplots(
+        2, 1, figsize=(6.4, 4.4), sharex=True, layout="constrained", height_ratios=(2, 1)
+    )
+    plot.get_layout_engine().set(rect=(0, 0.04, 1, 0.96))
+    for (case, frames), colour in zip(paths_by_case.items(), COLOURS, strict=False):
+        steady = [frame for frame in frames if frame["jitter_px"]]
+        numbers = [frame["frame"] for frame in steady]
+        median, p95 = ([frame["jitter_px"][key] for frame in steady] for key in ("median", "p95"))
+        jitter.plot(numbers, median, "o-", color=colour, ms=3, label=case)
+        jitter.fill_between(numbers, median, p95, color=colour, alpha=0.15, lw=0)
+        popping.plot(
+            [frame["frame"] for frame in frames[1:]],
+            [100 * frame["popping"] for frame in frames[1:]],
+            "o-",
+            color=colour,
+            ms=3,
+        )
+    popping.axhline(100 * POP_SHARE, color=QUIET, lw=1, ls=":")
+    jitter.set(ylabel="jitter, px\n(median to p95)", ylim=(0, None))
+    popping.set(ylabel="points that\njump, %", xlabel="frame", ylim=(0, None))
+    popping.xaxis.get_major_locator().set_params(integer=True)
+    for axis in (jitter, popping):
+        axis.grid(color=GRID, lw=0.6)
+    jitter.legend(fontsize=8)
     return plot
 
 

@@ -54,6 +54,11 @@ class Run:
             raise FileNotFoundError(f"expected {wanted} below {self.files}, found {len(found)}")
         return found[0]
 
+    def path(self, row: dict) -> list[dict]:
+        """The frames of a followed path, in order, from the arrays beside the results."""
+        arrays = (self.files / f"{row['run']}.frames.json").read_text(encoding="utf-8")
+        return json.loads(arrays)["path"]
+
 
 def _last_number(stem: str) -> int | None:
     numbers = re.findall(r"\d+", stem)
@@ -78,6 +83,15 @@ def bench(scene: str, cases: list[str], *, size: str, frames: str, repeat: int) 
         return _kept(file, scene, cases, size, frames)
     arguments = ["bench", "--scene", scene, "--size", size, "--frames", frames]
     arguments += ["--repeat", str(repeat)]
+    for case in cases:
+        arguments += ["--case", case]
+    return _run(arguments)
+
+
+def follow(scene: str, cases: list[str], *, size: str, frames: str) -> Run:
+    """Follow a path for cases on a scene; one row a case, whose frames `Run.path` reads."""
+    arguments = ["bench", "--scene", scene, "--size", size, "--frames", frames]
+    arguments += ["--repeat", "1", "--truth-frames", "0", "--path"]
     for case in cases:
         arguments += ["--case", case]
     return _run(arguments)

@@ -40,3 +40,18 @@ def verdict(row: dict) -> str:
         f"{sentences} What is shown is displaced by {displaced['median']:.1f} px in the median, "
         f"{displaced['p95']:.1f} px at the 95th percentile and {displaced['max']:.1f} px at most."
     )
+
+
+def steadiness_line(row: dict) -> str:
+    """One row's stability in words."""
+    stability = row["stability"]
+    first, last = stability["frames"]
+    jitter = stability["jitter_px"]
+    trembling = "shows no point over three frames"
+    if jitter:
+        trembling = f"trembles by {jitter['median']:.3f} px in the median and {jitter['p95']:.3f} px at p95"
+    return (
+        f"{row['case']} {trembling}, and pops in {stability['pops']} of the frames {first} to {last}; "
+        f"{100 * stability['covered']:.0f} % of the points are found, which move at up to "
+        f"{stability['speed_px']:.2f} px a frame."
+    )

@@ -152,6 +152,19 @@ def row(scene: str, case: str, size: list[int], frame: int, timed: bool, baselin
     }  # fmt: skip
 
 
+def path(case: str, first: int, end: int) -> list[dict]:
+    """Frames of a path as the binary writes them: no jitter at either end."""
+    jitter = {"median": 0.01 * len(case), "p95": 0.03 * len(case)}
+    return [
+        {
+            "frame": frame, "points": 900, "covered": 0.8, "speed_px": None if frame == first else 1.5,
+            "jitter_px": jitter if first < frame < end - 1 else None,
+            "popping": 0.004 * (frame % 3), "temporal_error": None,
+        }
+        for frame in range(first, end)
+    ]  # fmt: skip
+
+
 def main() -> int:
     parser = argparse.ArgumentParser()
     parser.add_argument("command", choices=["list", "render", "bench", "doctor"])
@@ -162,7 +175,9 @@ def main() -> int:
     parser.add_argument("--frame", type=int, default=0)
     parser.add_argument("--out", type=Path)
     parser.add_argument("--dump", default="")
-    for ignored in ("--frames", "--repeat", "--record", "--truth-frames"):
+    parser.add_argument("--frames", default="0..1")
+    parser.add_argument("--path", action="store_true")
+    for ignored in ("--repeat", "--record", "--truth-frames"):
         parser.add_argument(ignored)
     parser.add_argument("--json", action="store_true")
     args = parser.parse_args()
@@ -182,7 +197,18 @@ def main() -> int:
             if args.dump == "environment-map/capture":
                 save(args.out / "dump" / args.dump / "radiance.exr", cube(128))
         timed = args.command == "bench"
-        print(json.dumps(row(args.scene, case, size, args.frame, timed, args.case[0])))
+        answer = row(args.scene, case, size, args.frame, timed, args.case[0])
+        if args.path:
+            first, end = (int(n) for n in args.frames.split(".."))
+            frames = path(case, first, end)
+            answer["run"] = f"toy-{len(case)}"
+            answer["stability"] = {
+                "frames": [first, end - 1], "jitter_px": frames[1]["jitter_px"], "pops": 1,
+                "temporal_error": None, "points": 900.0, "covered": 0.8, "speed_px": 1.5,
+            }  # fmt: skip
+            arrays = json.dumps({"run": answer["run"], "path": frames})
+            (args.out / f"{answer['run']}.frames.json").write_text(arrays)
+        print(json.dumps(answer))
     return 0
 
 

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from mirrorfigures import bench, paths, render, runs
+from mirrorfigures import bench, follow, paths, render, runs
 
 
 def calls(log):
@@ -49,6 +49,15 @@ def test_bench_gives_a_row_a_case(fake):
     assert [row["case"] for row in run.rows] == ["none", "environment-map"]
     with pytest.raises(ValueError, match="2 rows"):
         run.row
+
+
+def test_a_path_is_read_from_the_arrays_beside_the_results(fake):
+    run = follow("columns", ["none", "environment-map"], size="64x64", frames="3..8")
+    for row in run.rows:
+        frames = run.path(row)
+        assert [frame["frame"] for frame in frames] == [3, 4, 5, 6, 7]
+        assert frames[1]["jitter_px"] == row["stability"]["jitter_px"]
+        assert frames[0]["jitter_px"] is None
 
 
 def test_rows_of_another_schema_are_refused(fake):

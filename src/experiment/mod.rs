@@ -7,6 +7,7 @@ pub mod diff;
 mod dump_file;
 pub mod engine;
 pub mod evidence;
+pub mod film;
 pub mod frame_file;
 pub mod lab;
 pub mod output;

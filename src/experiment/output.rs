@@ -67,7 +67,8 @@ pub fn write_file(
     written.map_err(|cause| Error::output(path, cause))
 }
 
-fn temporary(path: &Path) -> PathBuf {
+/// Where a file is written until it is whole.
+pub(super) fn temporary(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(format!(".partial-{}", std::process::id()));
     path.with_file_name(name)

@@ -104,6 +104,7 @@ mod tests {
         };
         let sweep = read("scenes = [\"sky\"]\ncases = [\"none\"]\nsizes = [\"64x64\"]").unwrap();
         assert_eq!((sweep.truth_frames, sweep.sizes.len(), sweep.repeat), (3, 1, None));
+        assert!(!sweep.path);
         for (text, expected) in [
             ("scenes = [\"sky\"]\ncases = [\"none\"]\nscene = 1", "a.toml:3: unknown field"),
             ("scenes = [\"sky\"]\ncases = 3", "a.toml:2: invalid type"),

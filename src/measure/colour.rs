@@ -1,7 +1,7 @@
 //! Errors of the picture's colours over the pixels of the reflectors.
 
 use glam::Vec3;
-use nv_flip::FlipImageRgb8;
+use nv_flip::{FlipImageFloat, FlipImageRgb8};
 
 use crate::geometry::{Camera, Projection};
 
@@ -54,11 +54,28 @@ pub fn flip_map(
     tested: &[Vec3],
     pixels_per_degree: f32,
 ) -> Vec<f32> {
+    flip(size, reference, tested, pixels_per_degree).to_vec()
+}
+
+/// The same in the colours FLIP's authors draw it with: black for no difference, through red, to
+/// light yellow.
+pub fn flip_picture(
+    size: [u32; 2],
+    reference: &[Vec3],
+    tested: &[Vec3],
+    pixels_per_degree: f32,
+) -> Vec<[u8; 3]> {
+    let errors = flip(size, reference, tested, pixels_per_degree);
+    let bytes = errors.apply_color_lut(&nv_flip::magma_lut()).to_vec();
+    bytes.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect()
+}
+
+fn flip(size: [u32; 2], reference: &[Vec3], tested: &[Vec3], ppd: f32) -> FlipImageFloat {
     let image = |pixels: &[Vec3]| {
         let bytes: Vec<u8> = pixels.iter().flat_map(|&pixel| tone_map(pixel)).collect();
         FlipImageRgb8::with_data(size[0], size[1], &bytes)
     };
-    nv_flip::flip(image(reference), image(tested), pixels_per_degree).to_vec()
+    nv_flip::flip(image(reference), image(tested), ppd)
 }
 
 /// Pixels that one degree of the camera's field of view covers at the image's centre. An
