@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "not every user needs everything")]
 
 pub mod embree;
+pub mod pov_file;
+pub mod povray;
 
 use glam::{Vec2, Vec3};
 use mirrorbench::geometry::Ray;
