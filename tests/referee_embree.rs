@@ -83,8 +83,9 @@ struct Held {
     floor: f32,
 }
 
-/// What the trees answer.
-const TREE: Held = Held { percent: 100.0, floor: 0.0 };
+/// What the trees answer. Below a centimetre the rounding of coordinates, about 1e-7 m, is by itself
+/// more than 1e-5: on a grazing ray 1.3 mm long Embree is off by 7e-5, we by 4e-5.
+const TREE: Held = Held { percent: 100.0, floor: 0.01 };
 
 /// The tracer's distance is that of two points in the world, each rounded to about 1e-7 m; on a
 /// slender triangle met at a grazing angle the interpolated point lies up to 0.2 mm along it.

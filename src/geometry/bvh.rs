@@ -2,6 +2,13 @@
 //!
 //! obvhs builds the binary tree. It is folded into nodes of eight boxes and leaves of up to four
 //! triangles that lie side by side, so that SSE2, which every x86-64 has, tests four at once.
+//!
+//! Beside Embree 4.4 on one thread (`cargo bench --bench referees`, mirrored rays, 600,000 triangles
+//! and `kitchen`) the binary tree itself reached 0.37 and 0.32 of its speed, nodes of four boxes 0.60
+//! and 0.58, nodes of eight 0.68 and 0.74. Tried without gain: Woop, Benthin & Wald's sheared
+//! triangle test (JCGT 2013), though it has half the operations: a ray meets ten nodes but two packs,
+//! and waits for memory and mispredicted branches rather than for arithmetic; huge pages; touching
+//! children ahead. obvhs's slower builds gain up to a tenth in `kitchen` for three times the build.
 
 mod build;
 mod node;

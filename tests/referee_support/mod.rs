@@ -2,8 +2,10 @@
 #![allow(dead_code, reason = "not every user needs everything")]
 
 pub mod embree;
+pub mod pov_file;
+pub mod povray;
 
-use glam::{Vec2, Vec3};
+use glam::{UVec2, Vec3};
 use mirrorbench::geometry::Ray;
 use mirrorbench::scene::{self, Lobe, Moment, Scene};
 use mirrorbench::truth::{Bounce, Tracer};
@@ -67,11 +69,17 @@ pub fn triangles(scene: &Scene, moment: &Moment) -> Vec<[Vec3; 3]> {
     triangles
 }
 
-/// The rays through the pixel centres of an image.
+/// The rays through the pixel centres of an image, tile by tile as the truth traces them.
 pub fn primary(moment: &Moment, size: [u32; 2]) -> Vec<Ray> {
-    let pixels =
-        (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| Vec2::new(x as f32, y as f32)));
-    pixels.map(|pixel| moment.camera.ray(size, pixel + 0.5)).collect()
+    const TILE: usize = 16;
+    let [columns, rows] = size.map(|side| (0..side).step_by(TILE));
+    let tiles = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
+    let pixels = tiles.flat_map(|(x, y)| {
+        let end = |start: u32, side: u32| (start + TILE as u32).min(side);
+        let across = x..end(x, size[0]);
+        (y..end(y, size[1])).flat_map(move |y| across.clone().map(move |x| UVec2::new(x, y)))
+    });
+    pixels.map(|pixel| moment.camera.ray(size, pixel.as_vec2() + 0.5)).collect()
 }
 
 /// Where the rays of an image meet mirrors, and the mirrored rays that leave from there.

@@ -4,10 +4,14 @@
 //! the other on each batch, the first chosen by lot; so what else the machine does meets both alike.
 //! Only Embree's own call is timed, not the pipe to it. A ratio is the median over the batches
 //! with its 95 % bootstrap interval.
+//!
+//! Then the whole process against POV-Ray's, from its start to the picture on disk, all threads.
 
 #[path = "../../tests/referee_support/mod.rs"]
 mod support;
 
+use std::fs;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use mirrorbench::geometry::Ray;
@@ -16,6 +20,8 @@ use mirrorbench::measure::statistics::{SplitMix64, median, median_ci95};
 use mirrorbench::scene::{Scene, load};
 use mirrorbench::truth::{Bounce, Tracer, TruthOptions};
 use support::embree::Embree;
+use support::pov_file::{self, Look};
+use support::povray;
 
 const SIZE: [u32; 2] = [512, 512];
 const BATCH: usize = 5000;
@@ -29,6 +35,8 @@ fn main() {
     compare("fine", &support::fine(), 0, &mut embree);
     // Late on its path the camera is close to a mirror.
     compare("kitchen", &load("kitchen").expect("a shipped scene"), 150, &mut embree);
+    drop(embree);
+    whole_process();
 }
 
 fn compare(name: &str, scene: &Scene, frame: u32, embree: &mut Embree) {
@@ -99,4 +107,45 @@ fn race<T>(
         ratio: median(&ratios).expect("rays"),
         interval: median_ci95(&ratios, 1).expect("rays"),
     }
+}
+
+/// `columns` at 512x512 with spheres in closed form, nothing cached, in turns with POV-Ray.
+fn whole_process() {
+    const SIDE: u32 = 512;
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let scene = load("columns").expect("a shipped scene");
+    let file = pov_file::write(&scene, &scene.at(0), Look::Flat);
+    fs::write(folder.path().join("scene.pov"), file).expect("a temporary file");
+    let render = || {
+        let cache = folder.path().join("cache");
+        let status = Command::new(env!("CARGO_BIN_EXE_mirrorbench"))
+            .args(["render", "--scene", "columns", "--case", "truth:shapes=analytic"])
+            .args(["--size", &format!("{SIDE}x{SIDE}"), "--out"])
+            .arg(folder.path().join("out"))
+            .env("MIRRORBENCH_CACHE", &cache)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .status();
+        assert!(status.is_ok_and(|status| status.success()), "mirrorbench render failed");
+        fs::remove_dir_all(cache).expect("the frame just cached");
+    };
+    let timed = |run: &dyn Fn()| {
+        let start = Instant::now();
+        run();
+        start.elapsed().as_secs_f64()
+    };
+    let times: Vec<[f64; 2]> = (0..ROUNDS)
+        .map(|_| [timed(&render), timed(&|| povray::run(folder.path(), SIDE))])
+        .collect();
+    let each = |value: fn(&[f64; 2]) -> f64| times.iter().map(value).collect::<Vec<f64>>();
+    let [ours, theirs] =
+        [each(|times| times[0]), each(|times| times[1])].map(|times| median(&times));
+    let ratios = each(|[ours, theirs]| theirs / ours);
+    println!(
+        "whole process, columns at {SIDE}x{SIDE}: {:.2} s, POV-Ray {:.2} s, ratio {:.2} {:.2?}",
+        ours.expect("times"),
+        theirs.expect("times"),
+        median(&ratios).expect("times"),
+        median_ci95(&ratios, 1).expect("times")
+    );
 }
