@@ -9,6 +9,7 @@ from .figure import QUIET
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 MARKERS = "osD^vP"
 GRID = "#e7eaee"
+PANELS_ACROSS = 3
 
 POP_SHARE = 0.005
 """A frame in which more of the points jump is a pop: the binary's threshold."""
@@ -22,12 +23,17 @@ def speed_against_accuracy(rows_by_scene: dict[str, list[dict]], floor: str = "n
     drawn = [r for rows in rows_by_scene.values() for r in rows if r["method"] != floor]
     cases = dict.fromkeys(row["case"] for row in drawn)
     style = {case: (COLOURS[i % 6], MARKERS[i % 6]) for i, case in enumerate(cases)}
-    count = len(rows_by_scene)
+    across = min(len(rows_by_scene), PANELS_ACROSS)
+    down = -(-len(rows_by_scene) // across)
+    size = (2.9 * across + 0.6, 2.9 * down + 0.6)
     plot, axes = plt.subplots(
-        1, count, figsize=(2.9 * count + 0.6, 3.5), sharey=True, squeeze=False, layout="constrained"
+        down, across, figsize=size, sharey=True, squeeze=False, layout="constrained"
     )
-    plot.get_layout_engine().set(rect=(0, 0.12, 1, 0.88))
-    for axis, (scene, rows) in zip(axes[0], rows_by_scene.items(), strict=True):
+    legend = 0.42 / size[1]
+    plot.get_layout_engine().set(rect=(0, legend, 1, 1 - legend))
+    for axis in axes.flat[len(rows_by_scene) :]:
+        axis.remove()
+    for axis, (scene, rows) in zip(axes.flat, rows_by_scene.items(), strict=False):
         for row in rows:
             if row["method"] == floor:
                 axis.axvline(row["frame_gpu_ms"]["median"], color=QUIET, lw=1, ls=":")
@@ -40,12 +46,13 @@ def speed_against_accuracy(rows_by_scene: dict[str, list[dict]], floor: str = "n
         axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.xaxis.set_major_formatter("{x:g}")
         axis.xaxis.set_minor_formatter(NullFormatter())
-    axes[0][0].set_ylabel("bad at 1 px, % of mirror pixels\n(lower is better)")
+    for axis in axes[:, 0]:
+        axis.set_ylabel("bad at 1 px, % of mirror pixels\n(lower is better)")
     handles = [
         plt.Line2D([], [], color=c, marker=m, ls="", label=case) for case, (c, m) in style.items()
     ]
     handles.append(plt.Line2D([], [], color=QUIET, ls=":", label="frame without reflections"))
-    plot.legend(handles=handles, loc="lower center", ncols=len(handles), bbox_to_anchor=(0.5, 0.03))
+    plot.legend(handles=handles, loc="lower center", ncols=3, bbox_to_anchor=(0.5, 0.0))
     return plot
 
 

@@ -19,7 +19,7 @@ from pathlib import Path
 from . import paths
 from .exr import Frame, read_frame
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 
 class RunFailed(RuntimeError):

@@ -134,7 +134,7 @@ def row(scene: str, case: str, size: list[int], frame: int, timed: bool, baselin
     gpu = {"median": scale / 2, "min": scale / 2, "p95": scale / 2}
     steps = ("direct-view/shade", f"{case.split(':')[0]}/lookup")
     return {
-        "schema_version": 1, "run": "toy", "commit": "0123456789abcdef",
+        "schema_version": 2, "run": "toy", "commit": "0123456789abcdef",
         "scene": {"name": scene, "hash": "0", "triangles": 12, "vertices": 8, "objects": objects},
         "case": case, "method": case.split(":")[0], "variant": "published", "params": {},
         "fallback": "none", "size": size, "frames": [frame],

@@ -63,7 +63,7 @@ def test_a_path_is_read_from_the_arrays_beside_the_results(fake):
 def test_rows_of_another_schema_are_refused(fake):
     folder = render("columns", "truth").files.parent
     row = json.loads((folder / "rows.jsonl").read_text())
-    (folder / "rows.jsonl").write_text(json.dumps(row | {"schema_version": 2}) + "\n")
+    (folder / "rows.jsonl").write_text(json.dumps(row | {"schema_version": 1}) + "\n")
     with pytest.raises(runs.RunFailed, match="schema 2"):
         render("columns", "truth")
 

@@ -18,7 +18,7 @@ use crate::methods::{Case, Kind, MethodInfo};
 use crate::scene::Scene;
 
 /// Raised when a field changes its name or meaning.
-pub const SCHEMA_VERSION: u32 = 1;
+pub const SCHEMA_VERSION: u32 = 2;
 
 /// The commit the program was built from.
 pub const COMMIT: &str = env!("MIRRORBENCH_COMMIT");
