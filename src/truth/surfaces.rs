@@ -1,5 +1,7 @@
 //! The scene's surfaces at one moment, in world space, and where rays meet them.
 
+use std::ops::Range;
+
 use glam::{Affine3A, Vec2, Vec3};
 
 use super::shape::Shape;
@@ -37,6 +39,8 @@ pub(super) struct Surfaces<'s> {
     bvh: Bvh,
     /// Object and triangle of each triangle in the tree.
     owners: Vec<(ObjectId, u32)>,
+    /// Which triangles of the tree are an object's.
+    ranges: Vec<Range<u32>>,
     /// Closed forms standing for objects' meshes.
     shapes: Vec<Shape>,
 }
@@ -45,11 +49,14 @@ impl<'s> Surfaces<'s> {
     pub fn new(scene: &'s Scene, moment: &Moment, option: Shapes) -> Self {
         let mut triangles = Vec::new();
         let mut owners = Vec::new();
+        let mut ranges = Vec::new();
         let mut shapes = Vec::new();
         for (id, object) in scene.objects.iter().enumerate() {
             let (id, pose) = (id as ObjectId, moment.poses[id]);
+            let first = owners.len() as u32;
             if let (Some(surface), Shapes::Analytic) = (object.surface, option) {
                 shapes.push(Shape::new(id, &pose, surface));
+                ranges.push(first..first);
                 continue;
             }
             let mesh = scene.mesh_of(id);
@@ -58,19 +65,17 @@ impl<'s> Surfaces<'s> {
                 triangles.push(corners.map(place));
                 owners.push((id, index as u32));
             }
+            ranges.push(first..owners.len() as u32);
         }
         let poses = moment.poses.clone();
-        Surfaces { scene, poses, bvh: Bvh::new(&triangles), owners, shapes }
+        Surfaces { scene, poses, bvh: Bvh::new(&triangles), owners, ranges, shapes }
     }
 
     /// The nearest surface along `ray` within `range` metres; `from` is where the ray leaves a
     /// surface, if it does.
     pub fn nearest(&self, ray: &Ray, range: [f32; 2], from: Option<&Bounce>) -> Option<Hit> {
-        let accept = |index: u32, front: bool| {
-            let (object, triangle) = self.owners[index as usize];
-            from.is_none_or(|from| may_meet(from, object, triangle, front))
-        };
-        let mut found = self.bvh.nearest(ray, range, accept).map(|hit| {
+        let may_meet = self.may_meet(from);
+        let mut found = self.bvh.nearest(ray, range, may_meet).map(|hit| {
             let (object, triangle) = self.owners[hit.triangle as usize];
             let surface = self.interpolate(object, triangle, hit.barycentrics);
             self.met(surface, ray, hit.front)
@@ -89,15 +94,24 @@ impl<'s> Surfaces<'s> {
     pub fn is_blocked(&self, from: &Bounce, blocks: impl Fn(ObjectId) -> bool) -> bool {
         let ray = Ray { origin: from.hit.point, direction: from.outgoing };
         let range = [0.0, f32::INFINITY];
+        let may_meet = self.may_meet(Some(from));
         let accept = |index: u32, front: bool| {
-            let (object, triangle) = self.owners[index as usize];
-            blocks(object) && may_meet(from, object, triangle, front)
+            blocks(self.owners[index as usize].0) && may_meet(index, front)
         };
         let by_shape = |shape: &Shape| {
             let own = (from.hit.object == shape.object).then(|| from.outside());
             blocks(shape.object) && shape.nearest(&ray, range, own).is_some()
         };
         self.bvh.nearest(&ray, range, accept).is_some() || self.shapes.iter().any(by_shape)
+    }
+
+    /// The rule of [`Hit`] for the triangles that a ray meets, which leaves a surface or does not:
+    /// by their numbers alone, as looking up the owner of each would cost more than the rule.
+    fn may_meet(&self, from: Option<&Bounce>) -> impl Fn(u32, bool) -> bool + use<> {
+        let own = from.map_or(0..0, |from| self.ranges[from.hit.object as usize].clone());
+        let start = from.map_or(0, |from| own.start + from.hit.triangle);
+        let outside = from.is_some_and(Bounce::outside);
+        move |index, front| !own.contains(&index) || index != start && front == outside
     }
 
     /// See [`super::Tracer::surface_at`].
@@ -149,11 +163,6 @@ impl<'s> Surfaces<'s> {
         let distance = (point - ray.origin).dot(ray.direction);
         Hit { object, triangle, point, normal, uv, front, distance }
     }
-}
-
-/// The rule of [`Hit`] for rays that leave a surface.
-fn may_meet(from: &Bounce, object: ObjectId, triangle: u32, front: bool) -> bool {
-    object != from.hit.object || triangle != from.hit.triangle && front == from.outside()
 }
 
 /// A [`Hit`] before it is known from where it is seen.
