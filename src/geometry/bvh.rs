@@ -5,7 +5,7 @@
 //!
 //! Beside Embree 4.4 on one thread (`cargo bench --bench referees`, mirrored rays, 600,000 triangles
 //! and `kitchen`) the binary tree itself reached 0.37 and 0.32 of its speed, nodes of four boxes 0.60
-//! and 0.58, nodes of eight 0.65 and 0.72; built for the native CPU (Zen 4) 0.69 and 0.77. Tried
+//! and 0.58, nodes of eight 0.65 and 0.72; built for the native CPU (Zen 4) 0.72 and 0.79. Tried
 //! without gain: Woop, Benthin & Wald's sheared triangle test (JCGT 2013), though it has half the
 //! operations: a ray meets ten nodes but two packs, and waits for memory and mispredicted branches
 //! rather than for arithmetic, so wider registers matter little too; huge pages; touching children
