@@ -27,6 +27,12 @@ struct RayHit {
     front: bool,
 }
 
+// One over a direction, finite also along an axis.
+fn inverse_of(direction: vec3<f32>) -> vec3<f32> {
+    let tiny = select(vec3(1.0e-20), vec3(-1.0e-20), direction < vec3(0.0));
+    return 1.0 / select(direction, tiny, abs(direction) < vec3(1.0e-20));
+}
+
 // What following rays took.
 struct RayWork {
     rays: u32,

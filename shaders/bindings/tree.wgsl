@@ -2,8 +2,9 @@
 // Rust twin: geometry/bvh.rs.
 #define_import_path bindings::tree
 
-#import bindings::rays::{FAR, RayHit, Start, ray_work}
-#import bindings::tree_data::{Node, corners_at, node_at}
+#import bindings::rays::{FAR, RayHit, Start, inverse_of, ray_work}
+#import bindings::tree_data::{Node, node_at}
+#import bindings::triangle::with_triangle
 
 // Nodes on the way down from the root, at most; the host checks.
 const DEEPEST: u32 = 64u;
@@ -28,51 +29,10 @@ fn enters(node: Node, ray: BoxRay, end: f32) -> f32 {
     return select(FAR, near, near <= leave);
 }
 
-// Six times the volume between an edge and the ray; two triangles that share the edge compute the
-// same number with opposite signs, so a ray cannot slip through between them.
-fn edge_volume(a: vec3<f32>, b: vec3<f32>, direction: vec3<f32>) -> f32 {
-    return dot(cross(b - a, b + a), direction);
-}
-
-// A triangle against a ray, as the nearest so far would have it.
-fn with_triangle(
-    nearest: RayHit,
-    slot: u32,
-    origin: vec3<f32>,
-    direction: vec3<f32>,
-    start: Start,
-) -> RayHit {
-    let corners = corners_at(slot);
-    let a = corners.first - origin;
-    let b = corners.second - origin;
-    let c = corners.third - origin;
-    let u = edge_volume(b, c, direction);
-    let v = edge_volume(c, a, direction);
-    let w = edge_volume(a, b, direction);
-    if min(u, min(v, w)) < 0.0 && max(u, max(v, w)) > 0.0 {
-        return nearest;
-    }
-    let sum = u + v + w;
-    let normal = cross(b - a, c - a);
-    let slope = dot(normal, direction);
-    if sum == 0.0 || slope == 0.0 {
-        return nearest;
-    }
-    let distance = dot(normal, a) / slope;
-    let front = slope < 0.0;
-    let own = corners.object == start.object
-        && (corners.triangle == start.triangle || front != start.outside);
-    if own || !(distance >= 0.0 && distance < nearest.distance) {
-        return nearest;
-    }
-    return RayHit(distance, corners.object, corners.triangle, vec2(v, w) / sum, front);
-}
-
 // The nearest triangle a ray meets. The direction has unit length.
 fn trace(origin: vec3<f32>, direction: vec3<f32>, start: Start) -> RayHit {
     var nearest = RayHit(FAR, 0u, 0u, vec2(0.0), false);
-    let tiny = select(vec3(1.0e-20), vec3(-1.0e-20), direction < vec3(0.0));
-    let ray = BoxRay(origin, 1.0 / select(direction, tiny, abs(direction) < vec3(1.0e-20)));
+    let ray = BoxRay(origin, inverse_of(direction));
     var open = 0u;
     var node = node_at(0u);
     ray_work.rays += 1u;

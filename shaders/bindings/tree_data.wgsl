@@ -2,6 +2,23 @@
 // Rust twin: stages/scene_tree.rs.
 #define_import_path bindings::tree_data
 
+#ifdef TREE_WIDE
+// Eight boxes in steps from a corner (Ylitie et al. 2017, Fig. 2, as obvhs lays it out).
+// Rust twin: geometry/wide_tree.rs.
+struct Node {
+    low: vec3<f32>,
+    // Exponent of the step along each axis, a byte each; then which of the eight are nodes.
+    steps: u32,
+    first_node: u32,
+    first_triangle: u32,
+    // A byte for each of the eight: its place among nodes, or its triangles; 0 where there is none.
+    kinds: vec2<u32>,
+    // Where each of the eight begins and, in the last two words, where it ends: a byte each.
+    x: vec4<u32>,
+    y: vec4<u32>,
+    z: vec4<u32>,
+}
+#else
 struct Node {
     low: vec3<f32>,
     // Triangles of a leaf; 0 in the inside of the tree.
@@ -10,6 +27,7 @@ struct Node {
     // First triangle of a leaf; first of two children.
     first: u32,
 }
+#endif
 
 // With `TREE_PARTS` every array is cut into four buffers, each below what a binding may hold. Passes
 // that fit the tree to what has moved see it `TREE_WRITABLE`.

@@ -1,5 +1,5 @@
-// Chains of mirrors and glass followed by rays (Whitted 1980): through the scene's tree, or by the
-// device's own ray queries.
+// Chains of mirrors and glass followed by rays (Whitted 1980): through one of the scene's trees,
+// or by the device's own ray queries.
 // Rust twin: truth/chain.rs, whose recursion is a stack of rays here.
 #define_import_path bindings::whitted
 
@@ -8,6 +8,8 @@
 #import bindings::rays::{FAR, Start, surface_point}
 #ifdef RAY_QUERY
 #import bindings::structure::trace
+#else ifdef TREE_WIDE
+#import bindings::wide_tree::trace
 #else
 #import bindings::tree::trace
 #endif

@@ -1,6 +1,10 @@
 // Traces rays through the scene's tree, for the test that holds it against the processor's.
 #import bindings::rays::{FAR, Start, surface_point}
+#ifdef TREE_WIDE
+#import bindings::wide_tree::trace
+#else
 #import bindings::tree::trace
+#endif
 
 // Origin; direction; object, triangle and side of the surface it starts on, as numbers.
 struct Ray {

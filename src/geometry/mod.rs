@@ -11,6 +11,7 @@ pub mod optics;
 pub mod polynomial;
 pub mod shapes;
 pub mod tree;
+pub mod wide_tree;
 
 pub use camera::{Camera, Projection};
 pub use mesh::Mesh;

@@ -41,14 +41,10 @@ impl Tree {
 
     /// Build over `triangles`, corners in any one space; corners must be finite.
     pub fn new(triangles: &[[Vec3; 3]]) -> Tree {
-        let list: Vec<Triangle> = triangles
-            .iter()
-            .map(|&[v0, v1, v2]| Triangle { v0: v0.into(), v1: v1.into(), v2: v2.into() })
-            .collect();
-        if list.is_empty() {
+        if triangles.is_empty() {
             return Tree { nodes: vec![NOTHING], order: Vec::new(), depth: 1 };
         }
-        let mut build_time = Duration::ZERO;
+        let (list, mut build_time) = (obvhs_triangles(triangles), Duration::ZERO);
         let tree = build_bvh2_from_tris(&list, BvhBuildParams::medium_build(), &mut build_time);
         let nodes: Vec<Node> = tree
             .nodes
@@ -89,6 +85,23 @@ impl Tree {
     }
 }
 
+/// Triangles as obvhs takes them.
+pub(super) fn obvhs_triangles(triangles: &[[Vec3; 3]]) -> Vec<Triangle> {
+    let triangle =
+        |&[v0, v1, v2]: &[Vec3; 3]| Triangle { v0: v0.into(), v1: v1.into(), v2: v2.into() };
+    triangles.iter().map(triangle).collect()
+}
+
+/// Small triangles strewn over a cube, to build trees over.
+#[cfg(test)]
+pub(super) fn strewn(n: u32) -> Vec<[Vec3; 3]> {
+    let place = |k: u32| {
+        let s = k as f32;
+        Vec3::new((s * 0.37).fract(), (s * 0.71).fract(), (s * 0.13).fract())
+    };
+    (0..n).map(|k| [place(k), place(k) + 0.02 * Vec3::X, place(k) + 0.03 * Vec3::Y]).collect()
+}
+
 /// Parent and depth of every node; the root is its own parent.
 fn parents(nodes: &[Node]) -> Vec<(u32, u32)> {
     let mut parents = vec![(0, 0); nodes.len()];
@@ -108,15 +121,6 @@ fn parents(nodes: &[Node]) -> Vec<(u32, u32)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Small triangles strewn over a cube.
-    fn strewn(n: u32) -> Vec<[Vec3; 3]> {
-        let place = |k: u32| {
-            let s = k as f32;
-            Vec3::new((s * 0.37).fract(), (s * 0.71).fract(), (s * 0.13).fract())
-        };
-        (0..n).map(|k| [place(k), place(k) + 0.02 * Vec3::X, place(k) + 0.03 * Vec3::Y]).collect()
-    }
 
     /// The box of everything below a node, by its triangles.
     fn fitted(tree: &Tree, triangles: &[[Vec3; 3]], index: u32) -> [Vec3; 2] {

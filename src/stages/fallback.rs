@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use super::{GpuScene, RecordMode, ReflectionRecord, SceneTree, TreeLayout, TreeUpdate, View};
+use super::{
+    GpuScene, RecordMode, ReflectionRecord, SceneTree, TreeKind, TreeLayout, TreeUpdate, View,
+};
 use crate::error::Result;
 use crate::gpu::{ComputePipeline, Device, Frame};
 
@@ -40,11 +42,12 @@ impl FallbackStage {
         let tree = match filling {
             Filling::Environment => None,
             Filling::Ray => {
-                let layout = TreeLayout::new(&scene.scene, device.storage_limit())?;
+                let kind = TreeKind::Binary(TreeUpdate::Refit);
+                let layout = TreeLayout::new(&scene.scene, kind, device.storage_limit())?;
                 defines.push(("FALLBACK_RAY", 1));
                 defines.extend(layout.defines());
                 defines.extend(scene.defines());
-                Some(SceneTree::new(device, layout, TreeUpdate::Refit)?)
+                Some(SceneTree::new(device, layout)?)
             }
         };
         let pipeline = ComputePipeline::new(device, "stages/fallback.wgsl", &defines)?;

@@ -21,5 +21,5 @@ pub use footprint::Footprint;
 pub use record::{RecordMode, ReflectionRecord};
 pub use scene::GpuScene;
 pub use scene_structure::SceneStructure;
-pub use scene_tree::{SceneTree, TreeLayout, TreeUpdate};
+pub use scene_tree::{SceneTree, TreeKind, TreeLayout, TreeUpdate};
 pub use view::{CameraUniform, View};

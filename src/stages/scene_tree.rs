@@ -9,6 +9,7 @@ use glam::Vec3;
 use super::GpuScene;
 use crate::error::{Error, Result};
 use crate::geometry::tree::{Node, Tree};
+use crate::geometry::wide_tree::{WideNode, WideTree};
 use crate::gpu::{Buffer, ComputePipeline, Device, Frame, Pass};
 use crate::scene::{Moment, Motion, ObjectId, Scene};
 
@@ -17,6 +18,9 @@ const PARTS: usize = 4;
 
 /// `DEEPEST` of `shaders/bindings/tree.wgsl`.
 const DEEPEST: u32 = 64;
+
+/// `WIDE_DEEPEST` of `shaders/bindings/wide_tree.wgsl`.
+const WIDE_DEEPEST: u32 = 32;
 
 /// Three corners, each with a word: object, triangle, none.
 type Slot = [[f32; 4]; 3];
@@ -31,47 +35,13 @@ pub struct Run {
     pad_b: u32,
 }
 
-/// How the tree of a scene lies in buffers: known before it is built, as shaders depend on it.
+/// Which tree, and so what is done when objects move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TreeLayout {
-    /// Nodes and triangles a buffer holds; `None` where one holds all.
-    parts: Option<[u32; 2]>,
-}
-
-impl TreeLayout {
-    /// For a scene on a device whose bindings hold so many bytes ([`Device::storage_limit`]).
-    ///
-    /// # Errors
-    /// [`Error::Device`] with the numbers where four buffers do not hold it.
-    pub fn new(scene: &Scene, limit: u64) -> Result<Self> {
-        let triangles = scene.triangles();
-        let (node, slot) = (size_of::<Node>() as u64, size_of::<Slot>() as u64);
-        let most = [Tree::most_nodes(triangles) as u64 * node, triangles as u64 * slot];
-        let largest = most[0].max(most[1]);
-        if largest > PARTS as u64 * limit {
-            return Err(Error::Device(format!(
-                "the tree of scene {} needs {largest} bytes in one array, the device takes \
-                 {PARTS} buffers of {limit}",
-                scene.name
-            )));
-        }
-        let parts = (largest > limit).then(|| [limit / node, limit / slot].map(|n| n as u32));
-        Ok(TreeLayout { parts })
-    }
-
-    /// Shader definitions of everything that imports `bindings::tree`.
-    pub fn defines(&self) -> Vec<(&'static str, u32)> {
-        match self.parts {
-            None => Vec::new(),
-            Some([nodes, slots]) => {
-                vec![("TREE_PARTS", 1), ("NODES_OF_PART", nodes), ("SLOTS_OF_PART", slots)]
-            }
-        }
-    }
-
-    fn part_lengths(&self) -> [usize; 2] {
-        self.parts.map_or([usize::MAX; 2], |parts| parts.map(|n| n as usize))
-    }
+pub enum TreeKind {
+    /// Two children a node.
+    Binary(TreeUpdate),
+    /// Eight a node, compressed; built anew.
+    Wide,
 }
 
 /// When objects move: fit the boxes again, or build anew.
@@ -81,14 +51,69 @@ pub enum TreeUpdate {
     Rebuild,
 }
 
+/// How the tree of a scene lies in buffers: known before it is built, as shaders depend on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TreeLayout {
+    kind: TreeKind,
+    /// Nodes and triangles a buffer holds; `None` where one holds all.
+    parts: Option<[u32; 2]>,
+}
+
+impl TreeLayout {
+    /// For a scene on a device whose bindings hold so many bytes ([`Device::storage_limit`]).
+    ///
+    /// # Errors
+    /// [`Error::Device`] with the numbers where four buffers do not hold it.
+    pub fn new(scene: &Scene, kind: TreeKind, limit: u64) -> Result<Self> {
+        let triangles = scene.triangles();
+        let (most_nodes, node) = match kind {
+            TreeKind::Binary(_) => (Tree::most_nodes(triangles), size_of::<Node>() as u64),
+            TreeKind::Wide => (WideTree::most_nodes(triangles), size_of::<WideNode>() as u64),
+        };
+        let slot = size_of::<Slot>() as u64;
+        let most = [most_nodes as u64 * node, triangles as u64 * slot];
+        let largest = most[0].max(most[1]);
+        if largest > PARTS as u64 * limit {
+            return Err(Error::Device(format!(
+                "the tree of scene {} needs {largest} bytes in one array, the device takes \
+                 {PARTS} buffers of {limit}",
+                scene.name
+            )));
+        }
+        let parts = (largest > limit).then(|| [limit / node, limit / slot].map(|n| n as u32));
+        Ok(TreeLayout { kind, parts })
+    }
+
+    /// Shader definitions of everything that imports `bindings::tree` or `bindings::wide_tree`.
+    pub fn defines(&self) -> Vec<(&'static str, u32)> {
+        let mut defines = Vec::new();
+        if self.kind == TreeKind::Wide {
+            defines.push(("TREE_WIDE", 1));
+        }
+        if let Some([nodes, slots]) = self.parts {
+            defines.extend([("TREE_PARTS", 1), ("NODES_OF_PART", nodes), ("SLOTS_OF_PART", slots)]);
+        }
+        defines
+    }
+
+    fn part_lengths(&self) -> [usize; 2] {
+        self.parts.map_or([usize::MAX; 2], |parts| parts.map(|n| n as usize))
+    }
+}
+
 /// The tree and what keeps it true.
 pub struct SceneTree {
     device: Arc<Device>,
     layout: TreeLayout,
-    update: TreeUpdate,
+    /// Only for a tree that is fitted.
+    fitting: Option<Fitting>,
+    built: Option<Built>,
+}
+
+/// What fits a tree.
+struct Fitting {
     place: ComputePipeline,
     refit: ComputePipeline,
-    built: Option<Built>,
 }
 
 /// One build.
@@ -101,16 +126,16 @@ struct Built {
 }
 
 impl SceneTree {
-    pub fn new(device: &Arc<Device>, layout: TreeLayout, update: TreeUpdate) -> Result<Self> {
+    pub fn new(device: &Arc<Device>, layout: TreeLayout) -> Result<Self> {
         let defines = layout.defines();
-        Ok(SceneTree {
-            place: ComputePipeline::new(device, "scene_tree/place.wgsl", &defines)?,
-            refit: ComputePipeline::new(device, "scene_tree/refit.wgsl", &defines)?,
-            device: device.clone(),
-            layout,
-            update,
-            built: None,
-        })
+        let fitting = match layout.kind {
+            TreeKind::Binary(TreeUpdate::Refit) => Some(Fitting {
+                place: ComputePipeline::new(device, "scene_tree/place.wgsl", &defines)?,
+                refit: ComputePipeline::new(device, "scene_tree/refit.wgsl", &defines)?,
+            }),
+            TreeKind::Binary(TreeUpdate::Rebuild) | TreeKind::Wide => None,
+        };
+        Ok(SceneTree { device: device.clone(), layout, fitting, built: None })
     }
 
     /// Make it that of the frame's moment. Passes and scopes are named under `owner`.
@@ -118,8 +143,8 @@ impl SceneTree {
     /// # Errors
     /// [`Error::Device`] where the tree does not fit the device or is too deep for the shader.
     pub fn prepare(&mut self, frame: &mut Frame, scene: &GpuScene, owner: &str) -> Result<()> {
-        match &self.built {
-            Some(built) if self.update == TreeUpdate::Refit => self.fit(frame, scene, owner, built),
+        match (&self.built, &self.fitting) {
+            (Some(built), Some(fitting)) => self.fit(frame, scene, owner, built, fitting),
             _ => {
                 let built = frame.cpu(&format!("{owner}/build"), || self.build(scene))?;
                 self.built = Some(built);
@@ -128,7 +153,7 @@ impl SceneTree {
         }
     }
 
-    /// Bind it to a pass whose shader imports `bindings::tree`.
+    /// Bind it to a pass whose shader imports `bindings::tree` or `bindings::wide_tree`.
     pub fn bind<'f>(&self, mut pass: Pass<'f>) -> Pass<'f> {
         const NODES: [&str; PARTS] = ["nodes_a", "nodes_b", "nodes_c", "nodes_d"];
         const CORNERS: [&str; PARTS] = ["corners_a", "corners_b", "corners_c", "corners_d"];
@@ -143,32 +168,32 @@ impl SceneTree {
 
     fn build(&self, scene: &GpuScene) -> Result<Built> {
         let (triangles, owners) = world_triangles(&scene.scene, scene.moment());
-        let tree = Tree::new(&triangles);
-        if tree.depth > DEEPEST {
-            return Err(Error::Device(format!(
-                "the tree of scene {} is {} nodes deep, the shader follows {DEEPEST}",
-                scene.scene.name, tree.depth
-            )));
-        }
-        let slots: Vec<Slot> = tree
-            .order
-            .iter()
-            .map(|&index| {
-                let (object, triangle) = owners[index as usize];
-                let words = [object, triangle, 0].map(f32::from_bits);
-                let corners = triangles[index as usize];
-                std::array::from_fn(|i| corners[i].extend(words[i]).to_array())
-            })
-            .collect();
         let [most_nodes, most_slots] = self.layout.part_lengths();
-        Ok(Built {
-            nodes: parts(&self.device, "tree nodes", &tree.nodes, most_nodes)?,
-            corners: parts(&self.device, "tree corners", &slots, most_slots)?,
-            moving: match self.update {
-                TreeUpdate::Refit => self.moving(&scene.scene, &tree, &owners)?,
-                TreeUpdate::Rebuild => None,
-            },
-        })
+        let (nodes, order, moving) = match self.layout.kind {
+            TreeKind::Binary(update) => {
+                let tree = Tree::new(&triangles);
+                check_depth(&scene.scene, tree.depth, DEEPEST)?;
+                let moving = match update {
+                    TreeUpdate::Refit => self.moving(&scene.scene, &tree, &owners)?,
+                    TreeUpdate::Rebuild => None,
+                };
+                (parts(&self.device, "tree nodes", &tree.nodes, most_nodes)?, tree.order, moving)
+            }
+            TreeKind::Wide => {
+                let tree = WideTree::new(&triangles);
+                check_depth(&scene.scene, tree.depth, WIDE_DEEPEST)?;
+                (parts(&self.device, "tree nodes", &tree.nodes, most_nodes)?, tree.order, None)
+            }
+        };
+        let slot = |&index: &u32| -> Slot {
+            let (object, triangle) = owners[index as usize];
+            let words = [object, triangle, 0].map(f32::from_bits);
+            let corners = triangles[index as usize];
+            std::array::from_fn(|i| corners[i].extend(words[i]).to_array())
+        };
+        let slots: Vec<Slot> = order.iter().map(slot).collect();
+        let corners = parts(&self.device, "tree corners", &slots, most_slots)?;
+        Ok(Built { nodes, corners, moving })
     }
 
     /// The list of what moves in a scene.
@@ -201,17 +226,34 @@ impl SceneTree {
         Ok(Some((Buffer::with_data(&self.device, "tree moving", &list)?, runs)))
     }
 
-    fn fit(&self, frame: &mut Frame, scene: &GpuScene, owner: &str, built: &Built) -> Result<()> {
+    fn fit(
+        &self,
+        frame: &mut Frame,
+        scene: &GpuScene,
+        owner: &str,
+        built: &Built,
+        fitting: &Fitting,
+    ) -> Result<()> {
         let Some((list, runs)) = &built.moving else { return Ok(()) };
         for (index, run) in runs.iter().enumerate() {
             let (step, pipeline) =
-                if index == 0 { ("place", &self.place) } else { ("refit", &self.refit) };
+                if index == 0 { ("place", &fitting.place) } else { ("refit", &fitting.refit) };
             let pass = frame.pass(&format!("{owner}/{step}")).compute(pipeline);
             let pass = self.bind(scene.bind(pass));
             pass.uniform("run", run).buffer("list", list).over(run.count)?;
         }
         Ok(())
     }
+}
+
+fn check_depth(scene: &Scene, depth: u32, deepest: u32) -> Result<()> {
+    if depth <= deepest {
+        return Ok(());
+    }
+    Err(Error::Device(format!(
+        "the tree of scene {} is {depth} nodes deep, the shader follows {deepest}",
+        scene.name
+    )))
 }
 
 /// All triangles of a moment in the world, and the object and number of each.
@@ -252,16 +294,23 @@ mod tests {
         assert_layout!("scene_tree/place.wgsl", "Run", Run, first, count, pad_a, pad_b);
         assert_layout!("scene_tree/refit.wgsl", "Run", Run, first, count, pad_a, pad_b);
         assert_layout!("scene_tree/refit.wgsl", "Node", Node, low, count, high, first);
+        assert_layout!(
+            "tests/wide_node.wgsl", "Node", WideNode,
+            low, steps, first_node, first_triangle, kinds, x, y, z,
+        );
     }
 
     #[test]
     fn a_tree_beyond_one_buffer_is_cut_and_one_beyond_four_refused() {
         let scene = scene::load("two-spheres").unwrap();
         let triangles = scene.triangles() as u64;
-        let layout = |limit| TreeLayout::new(&scene, limit);
+        let binary = TreeKind::Binary(TreeUpdate::Refit);
+        let layout = |limit| TreeLayout::new(&scene, binary, limit);
         assert!(layout(1 << 27).unwrap().defines().is_empty());
         let [nodes, slots] = layout(20 * triangles).unwrap().parts.unwrap();
         assert!(4 * u64::from(nodes) >= 2 * triangles && 4 * u64::from(slots) >= triangles);
+        let wide = TreeLayout::new(&scene, TreeKind::Wide, 20 * triangles).unwrap();
+        assert_eq!(wide.parts.unwrap()[0], (triangles / 4) as u32);
         let message = layout(10 * triangles).unwrap_err().to_string();
         assert!(message.contains("two-spheres") && message.contains("bytes"), "{message}");
     }
