@@ -64,7 +64,7 @@ def test_rows_of_another_schema_are_refused(fake):
     folder = render("columns", "truth").files.parent
     row = json.loads((folder / "rows.jsonl").read_text())
     (folder / "rows.jsonl").write_text(json.dumps(row | {"schema_version": 1}) + "\n")
-    with pytest.raises(runs.RunFailed, match="schema 2"):
+    with pytest.raises(runs.RunFailed, match="schema 1"):
         render("columns", "truth")
 
 
