@@ -106,7 +106,7 @@ fn the_fallback_traces_what_a_method_leaves() {
     for name in ["two-spheres", "glass-sphere"] {
         let scene = scene::load(name).unwrap();
         let size = [96, 64];
-        let traced = frame(&session, &scene, "ray-traced", size, 5);
+        let traced = frame(&session, &scene, "ray-traced:tree=binary", size, 5);
         let mended = |case: &str| {
             let options = RunOptions { fallback: Fallback::Ray, ..options(size) };
             engine(&session, &scene, case, &options).frame(&scene.at(5), true).unwrap()
@@ -126,7 +126,7 @@ fn the_fallback_traces_what_a_method_leaves() {
         assert_eq!(filled as usize, pixels.len() * records(&all).count());
         assert_eq!(all.colour, traced.colour);
         // Nothing is left by a method that answers everywhere.
-        let (untouched, times) = mended("ray-traced");
+        let (untouched, times) = mended("ray-traced:tree=binary");
         assert_eq!(untouched, traced);
         assert!(times.counters.contains(&("fallback-pixels".to_owned(), 0)));
     }

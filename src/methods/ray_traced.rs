@@ -6,11 +6,12 @@
 //!
 //! The tree has two boxes a node, or eight compressed ones (`tree=wide`). Prediction, that of Ylitie,
 //! Karras & Laine 2017: incoherent rays twice as fast through the wide one, as they read less memory.
-//! Outcome, on llvmpipe alone and so nothing sure about a GPU, at 640x400: a fifth of the nodes and half
-//! the triangles of the binary tree, whose leaves are larger; `reflect` in 0.55 (`hall-of-mirrors`) to
-//! 0.64 (`columns`) of its time, frames in 0.77 to 0.88, undecided in `kitchen`, where few pixels mirror.
-//! Where objects move the wide tree is built anew, which undoes the gain in `columns` (15 ms of
-//! processor a frame, 14 ms gained): so the binary tree, which follows them, is the default.
+//! Outcome, on llvmpipe alone and so nothing sure about a GPU, at 640x400: a sixth to a fifth of the
+//! nodes and half the triangles; `reflect` in 0.6 of the binary tree's time, frames in 0.77 to 0.88,
+//! undecided in `kitchen`, where few pixels mirror. The binary tree's larger leaves are not why: with
+//! leaves of three as the wide one has it meets as few triangles and takes as long as before. Where
+//! objects move the wide tree is built anew, which undoes the gain in `columns` (15 ms of processor a
+//! frame, 14 ms gained): so there `auto` takes the binary tree, which follows them.
 
 use super::{Changes, Family, Kind, MethodInfo, Param, ReflectionMethod, Setup, Want};
 use crate::error::Result;
@@ -46,16 +47,17 @@ pub const INFO: MethodInfo = MethodInfo {
         },
         Param {
             name: "tree",
-            kind: Kind::Choice(&["binary", "wide"]),
-            defaults: &["binary"],
+            kind: Kind::Choice(&["auto", "binary", "wide"]),
+            defaults: &["auto"],
             needs: Some(("backend", &["software"])),
-            doc: "boxes in two, or in eight and compressed, which is built anew when objects move",
+            doc: "two boxes a node; or eight, compressed, built anew when objects move; auto: eight \
+                  where nothing moves",
         },
         Param {
             name: "update",
             kind: Kind::Choice(&["refit", "rebuild"]),
             defaults: &["refit"],
-            needs: Some(("tree", &["binary"])),
+            needs: Some(("tree", &["auto", "binary"])),
             doc: "when objects move: fit the tree's boxes on the GPU, or build it anew",
         },
     ],
@@ -92,12 +94,15 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         defines.push(("RAY_QUERY", 1));
         Backend::Query(SceneStructure::new(device)?)
     } else {
-        let kind = if setup.values.is("tree", "wide") {
-            TreeKind::Wide
-        } else if setup.values.is("update", "rebuild") {
-            TreeKind::Binary(TreeUpdate::Rebuild)
-        } else {
-            TreeKind::Binary(TreeUpdate::Refit)
+        let rebuild = setup.values.is("update", "rebuild");
+        let wide = match setup.values.get("tree") {
+            "auto" => !scene.moves(),
+            tree => tree == "wide",
+        };
+        let kind = match (wide, rebuild) {
+            (true, _) => TreeKind::Wide,
+            (false, true) => TreeKind::Binary(TreeUpdate::Rebuild),
+            (false, false) => TreeKind::Binary(TreeUpdate::Refit),
         };
         let layout = TreeLayout::new(scene, kind, device.storage_limit())?;
         defines.extend(layout.defines());

@@ -161,6 +161,11 @@ impl Scene {
         self.objects.iter().any(|object| self.materials[object.material].glass.is_some())
     }
 
+    /// Whether any object moves.
+    pub fn moves(&self) -> bool {
+        self.objects.iter().any(|object| !matches!(object.motion, Motion::Still(_)))
+    }
+
     /// The reflectors that light leaves by a lobe, in rising order.
     pub fn with_lobe(&self, lobe: Lobe) -> Vec<ObjectId> {
         let mut reflectors = self.reflectors();
