@@ -108,6 +108,17 @@ fn corners_at(slot: u32) -> Corners {
 }
 
 #ifdef TREE_WRITABLE
+// What a pass that fits the tree works on: entries of the list, from `first` on.
+struct Run {
+    first: u32,
+    count: u32,
+    pad_a: u32,
+    pad_b: u32,
+}
+@group(0) @binding(0) var<uniform> run: Run;
+// Places in the leaves' order, then nodes.
+@group(0) @binding(1) var<storage, read> list: array<u32>;
+
 fn set_node(index: u32, node: Node) {
 #ifdef TREE_PARTS
     let place = index % #{NODES_OF_PART}u;

@@ -1,18 +1,7 @@
 #define TREE_WRITABLE
 // Puts the triangles that move where they are now.
 #import bindings::scene::{indices, objects, vertices, world_position}
-#import bindings::tree_data::{corners_at, set_corner}
-
-struct Run {
-    // Entries of the list, from `first` on.
-    first: u32,
-    count: u32,
-    pad_a: u32,
-    pad_b: u32,
-}
-@group(0) @binding(0) var<uniform> run: Run;
-// Places in the leaves' order.
-@group(0) @binding(1) var<storage, read> list: array<u32>;
+#import bindings::tree_data::{corners_at, list, run, set_corner}
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {

@@ -1,17 +1,6 @@
 #define TREE_WRITABLE
 // Fits the boxes of one depth of the tree to what they hold; those below have been.
-#import bindings::tree_data::{Node, corners_at, node_at, set_node}
-
-struct Run {
-    // Entries of the list, from `first` on.
-    first: u32,
-    count: u32,
-    pad_a: u32,
-    pad_b: u32,
-}
-@group(0) @binding(0) var<uniform> run: Run;
-// Nodes.
-@group(0) @binding(1) var<storage, read> list: array<u32>;
+#import bindings::tree_data::{Node, corners_at, list, node_at, run, set_node}
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
