@@ -25,11 +25,11 @@ def speed_against_accuracy(rows_by_scene: dict[str, list[dict]], floor: str = "n
     style = {case: (COLOURS[i % 6], MARKERS[i % 6]) for i, case in enumerate(cases)}
     across = min(len(rows_by_scene), PANELS_ACROSS)
     down = -(-len(rows_by_scene) // across)
-    size = (2.9 * across + 0.6, 2.9 * down + 0.6)
+    inches = (2.9 * across + 0.6, 2.9 * down + 0.6)
     plot, axes = plt.subplots(
-        down, across, figsize=size, sharey=True, squeeze=False, layout="constrained"
+        down, across, figsize=inches, sharey=True, squeeze=False, layout="constrained"
     )
-    legend = 0.42 / size[1]
+    legend = 0.6 / inches[1]
     plot.get_layout_engine().set(rect=(0, legend, 1, 1 - legend))
     for axis in axes.flat[len(rows_by_scene) :]:
         axis.remove()
@@ -52,7 +52,7 @@ def speed_against_accuracy(rows_by_scene: dict[str, list[dict]], floor: str = "n
         plt.Line2D([], [], color=c, marker=m, ls="", label=case) for case, (c, m) in style.items()
     ]
     handles.append(plt.Line2D([], [], color=QUIET, ls=":", label="frame without reflections"))
-    plot.legend(handles=handles, loc="lower center", ncols=3, bbox_to_anchor=(0.5, 0.0))
+    plot.legend(handles=handles, loc="lower center", ncols=3, bbox_to_anchor=(0.5, 0.15 / inches[1]))
     return plot
 
 
