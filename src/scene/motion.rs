@@ -29,6 +29,17 @@ impl Scene {
         boxes.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).unwrap_or((Vec3::ZERO, Vec3::ZERO))
     }
 
+    /// The corners of an object's triangles in the world at a moment, in the mesh's order.
+    pub fn world_triangles(
+        &self,
+        moment: &Moment,
+        object: ObjectId,
+    ) -> impl Iterator<Item = [Vec3; 3]> {
+        let (mesh, pose) = (self.mesh_of(object), moment.poses[object as usize]);
+        (0..mesh.triangles.len())
+            .map(move |index| mesh.corners(index).map(|corner| pose.transform_point3(corner)))
+    }
+
     /// The world box of one object at a moment.
     pub fn object_bounds(&self, moment: &Moment, object: ObjectId) -> (Vec3, Vec3) {
         let pose = moment.poses[object as usize];

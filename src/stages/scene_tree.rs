@@ -259,11 +259,9 @@ fn check_depth(scene: &Scene, depth: u32, deepest: u32) -> Result<()> {
 /// All triangles of a moment in the world, and the object and number of each.
 fn world_triangles(scene: &Scene, moment: &Moment) -> (Vec<[Vec3; 3]>, Vec<(ObjectId, u32)>) {
     let (mut triangles, mut owners) = (Vec::new(), Vec::new());
-    for (object, pose) in (0..).zip(&moment.poses) {
-        let mesh = scene.mesh_of(object);
-        for (number, corners) in (0..).zip(&mesh.triangles) {
-            let place = |corner: u32| pose.transform_point3(mesh.positions[corner as usize]);
-            triangles.push(corners.map(place));
+    for object in 0..scene.objects.len() as ObjectId {
+        for (corners, number) in scene.world_triangles(moment, object).zip(0..) {
+            triangles.push(corners);
             owners.push((object, number));
         }
     }

@@ -59,11 +59,9 @@ impl<'s> Surfaces<'s> {
                 ranges.push(first..first);
                 continue;
             }
-            let mesh = scene.mesh_of(id);
-            for (index, corners) in mesh.triangles.iter().enumerate() {
-                let place = |corner: u32| pose.transform_point3(mesh.positions[corner as usize]);
-                triangles.push(corners.map(place));
-                owners.push((id, index as u32));
+            for (corners, number) in scene.world_triangles(moment, id).zip(0..) {
+                triangles.push(corners);
+                owners.push((id, number));
             }
             ranges.push(first..owners.len() as u32);
         }

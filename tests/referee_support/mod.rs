@@ -7,7 +7,7 @@ pub mod povray;
 
 use glam::{UVec2, Vec3};
 use mirrorbench::geometry::Ray;
-use mirrorbench::scene::{self, Lobe, Moment, Scene};
+use mirrorbench::scene::{self, Lobe, Moment, ObjectId, Scene};
 use mirrorbench::truth::{Bounce, Tracer};
 
 /// Two finely cut mirrors and a finely cut object between them: 600,000 triangles.
@@ -60,13 +60,8 @@ pub fn fine() -> Scene {
 
 /// Every triangle of a moment in world space, objects one after the other: the truth's own list.
 pub fn triangles(scene: &Scene, moment: &Moment) -> Vec<[Vec3; 3]> {
-    let mut triangles = Vec::new();
-    for (object, pose) in (0..).zip(&moment.poses) {
-        let mesh = scene.mesh_of(object);
-        let place = |corner: Vec3| pose.transform_point3(corner);
-        triangles.extend((0..mesh.triangles.len()).map(|t| mesh.corners(t).map(place)));
-    }
-    triangles
+    let objects = 0..scene.objects.len() as ObjectId;
+    objects.flat_map(|object| scene.world_triangles(moment, object)).collect()
 }
 
 /// The rays through the pixel centres of an image, tile by tile as the truth traces them.
