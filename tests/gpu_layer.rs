@@ -69,6 +69,32 @@ fn buffers_and_images_come_back_as_they_were_written() {
 }
 
 #[test]
+fn mip_levels_of_all_layers_can_be_written_and_read() {
+    let session = Session::open();
+    let device = session.device();
+    let shape = Shape::Array(2);
+    let image = Image::with_levels(device, "levels", Format::Rg32Uint, [8, 8], shape, 4).unwrap();
+    let halve = ComputePipeline::new(device, "tests/levels.wgsl", &[]).unwrap();
+    let last = Image::new(device, "last", Format::Rg32Uint, [1, 1], shape).unwrap();
+    let mut frame = Frame::new(device).unwrap();
+    frame.begin().unwrap();
+    frame.pass("test/clear").clear(&[("image", &image, Load::ClearWords([1, 2, 0, 0]))]).unwrap();
+    for level in 1..4u32 {
+        let pass = frame.pass("test/levels").compute(&halve).sample("source", &image);
+        let pass = pass.uniform("source_level", &(level - 1));
+        pass.store_level("halved", &image, level).over_pixels([8 >> level; 2]).unwrap();
+    }
+    let pass = frame.pass("test/last").compute(&halve).sample("source", &image);
+    // The 1 x 1 level read as if it were 2 x 2: what lies outside is 0.
+    pass.uniform("source_level", &3u32).store("halved", &last).over_pixels([1, 1]).unwrap();
+    frame.submit().unwrap();
+    assert_eq!(image.read::<[u32; 2]>().unwrap().len(), 2 * 64);
+    let first = [64, 128];
+    // Layer 1 gains 1 at every level: ((1 * 4 + 1) * 4 + 1) * 4 + 1, and 1 more at the last.
+    assert_eq!(last.read::<[u32; 2]>().unwrap(), [first, [86, 128]]);
+}
+
+#[test]
 fn what_a_recorded_pass_uses_may_be_dropped_before_the_submit() {
     let session = Session::open();
     let device = session.device();

@@ -1,5 +1,5 @@
 //! Dumped images on disk: `FOLDER/<pass>/<variable>.exr`, a cube's faces as layers `face0` to
-//! `face5`.
+//! `face5`, those of a layered map counted on.
 
 use std::io;
 use std::path::Path;
@@ -15,14 +15,17 @@ use crate::gpu::{Dump, Format};
 
 const RGBA: [&str; 4] = ["R", "G", "B", "A"];
 
-/// Writes one dumped image; four channels R, G, B, A or the one channel Y.
+/// Writes one dumped image; two or four channels of R, G, B, A or the one channel Y.
 ///
 /// # Errors
 /// [`Error::Output`].
 pub fn write(folder: &Path, dump: &Dump) -> Result<()> {
     let folder = folder.join(&dump.pass);
     std::fs::create_dir_all(&folder).map_err(|cause| Error::output(&folder, cause))?;
-    let names: &[&str] = if channels_of(dump.format) == 4 { &RGBA } else { &["Y"] };
+    let names: &[&str] = match channels_of(dump.format) {
+        1 => &["Y"],
+        channels => &RGBA[..channels],
+    };
     let [width, height] = dump.size.map(|n| n as usize);
     let mut channels = Vec::new();
     for layer in 0..dump.layers as usize {
@@ -44,6 +47,7 @@ pub fn write(folder: &Path, dump: &Dump) -> Result<()> {
 fn channels_of(format: Format) -> usize {
     match format {
         Format::Rgba16Float | Format::Rgba32Float | Format::Rgba32Uint => 4,
+        Format::Rg32Uint => 2,
         Format::R32Float | Format::R32Uint | Format::DepthStencil => 1,
     }
 }
@@ -62,7 +66,7 @@ fn samples(dump: &Dump, first: usize, stride: usize, count: usize) -> FlatSample
         Format::Rgba32Float | Format::R32Float | Format::DepthStencil => {
             FlatSamples::F32(every(texels, first, stride, count))
         }
-        Format::Rgba32Uint | Format::R32Uint => {
+        Format::Rgba32Uint | Format::Rg32Uint | Format::R32Uint => {
             FlatSamples::U32(every(texels, first, stride, count))
         }
     }

@@ -158,6 +158,10 @@ impl Device {
         self.limits.max_image_dimension2_d.min(self.limits.max_image_dimension_cube)
     }
 
+    pub(super) fn max_image_layers(&self) -> u32 {
+        self.limits.max_image_array_layers
+    }
+
     pub(super) fn shaders(&self) -> MutexGuard<'_, Shaders> {
         self.shaders.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -328,11 +332,12 @@ fn create(
 
 /// One sampler a [`Sampler`], in its order; both clamp to the edge.
 fn samplers(device: &ash::Device) -> Result<[vk::Sampler; 2]> {
-    let sampler = |filter| {
+    let sampler = |filter, between_levels| {
         let clamp = vk::SamplerAddressMode::CLAMP_TO_EDGE;
         let info = vk::SamplerCreateInfo::default()
             .mag_filter(filter)
             .min_filter(filter)
+            .mipmap_mode(between_levels)
             .address_mode_u(clamp)
             .address_mode_v(clamp)
             .address_mode_w(clamp)
@@ -341,5 +346,6 @@ fn samplers(device: &ash::Device) -> Result<[vk::Sampler; 2]> {
         unsafe { device.create_sampler(&info, None) }
             .map_err(|e| Error::Device(format!("vkCreateSampler: {e}")))
     };
-    Ok([sampler(vk::Filter::NEAREST)?, sampler(vk::Filter::LINEAR)?])
+    let nearest = sampler(vk::Filter::NEAREST, vk::SamplerMipmapMode::NEAREST)?;
+    Ok([nearest, sampler(vk::Filter::LINEAR, vk::SamplerMipmapMode::LINEAR)?])
 }

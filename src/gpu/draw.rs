@@ -2,7 +2,7 @@
 
 use ash::vk;
 
-use super::pass::{Pass, Program};
+use super::pass::{Colour, Pass, Program};
 use super::{Buffer, Frame, Image};
 use crate::error::Result;
 
@@ -47,8 +47,8 @@ impl Pass<'_> {
         })
     }
 
-    /// Draw into the first layers of the attachments, one after the other; a shader's
-    /// `var<immediate>` of one word is the layer.
+    /// Draw into so many layers of the attachments, one after the other, from the first each was
+    /// given on; a shader's `var<immediate>` of one word counts them from 0.
     ///
     /// Multiview would do this in one go, but clipped triangles land in layer 0 with it on
     /// lavapipe (Mesa 22.3).
@@ -56,7 +56,7 @@ impl Pass<'_> {
         let Program::Graphics(pipeline) = self.program else {
             return Err(self.wrong("no graphics pipeline to draw with"));
         };
-        let first = self.colours.first().map(|(_, image, _)| image.size);
+        let first = self.colours.first().map(|colour| colour.image.size);
         let Some(size) = first.or(self.depth_stencil.map(|(image, ..)| image.size)) else {
             return Err(self.wrong("nothing to draw into"));
         };
@@ -88,7 +88,7 @@ impl Pass<'_> {
     }
 
     fn begin_rendering(&self, size: [u32; 2], layer: u32) {
-        let attachment = |image: &Image, load: Load, value| {
+        let attachment = |image: &Image, layer: u32, load: Load, value| {
             vk::RenderingAttachmentInfo::default()
                 .image_view(image.attachment_view(layer))
                 .image_layout(vk::ImageLayout::GENERAL)
@@ -99,12 +99,14 @@ impl Pass<'_> {
         let colours: Vec<_> = self
             .colours
             .iter()
-            .map(|&(_, i, load)| attachment(i, load, vk::ClearValue { color: load.colour() }))
+            .map(|&Colour { image, first, load, .. }| {
+                attachment(image, first + layer, load, vk::ClearValue { color: load.colour() })
+            })
             .collect();
         let depth_stencil = self.depth_stencil.map(|(image, depth, stencil)| {
             let value = Load::depth_stencil(depth, stencil);
             let value = vk::ClearValue { depth_stencil: value };
-            (attachment(image, depth, value), attachment(image, stencil, value))
+            (attachment(image, layer, depth, value), attachment(image, layer, stencil, value))
         });
         let extent = vk::Extent2D { width: size[0], height: size[1] };
         let area = vk::Rect2D { offset: vk::Offset2D::default(), extent };

@@ -22,6 +22,8 @@ pub enum Format {
     R32Float,
     /// Object ids: one word.
     R32Uint,
+    /// Two words.
+    Rg32Uint,
     /// Identities: four words.
     Rgba32Uint,
     /// Depth test (reversed, float) and stencil in one view, as Vulkan wants attachments.
@@ -35,6 +37,7 @@ impl Format {
             Format::Rgba32Float => vk::Format::R32G32B32A32_SFLOAT,
             Format::R32Float => vk::Format::R32_SFLOAT,
             Format::R32Uint => vk::Format::R32_UINT,
+            Format::Rg32Uint => vk::Format::R32G32_UINT,
             Format::Rgba32Uint => vk::Format::R32G32B32A32_UINT,
             Format::DepthStencil => vk::Format::D32_SFLOAT_S8_UINT,
         }
@@ -43,7 +46,7 @@ impl Format {
     /// Bytes a texel takes in a readback.
     pub fn texel_bytes(self) -> u64 {
         match self {
-            Format::Rgba16Float => 8,
+            Format::Rgba16Float | Format::Rg32Uint => 8,
             Format::Rgba32Float | Format::Rgba32Uint => 16,
             Format::R32Float | Format::R32Uint | Format::DepthStencil => 4,
         }
@@ -76,6 +79,8 @@ pub enum Shape {
     /// Six square layers in Vulkan's face order: seen as an array by stores and fetches, as a
     /// cube by `texture_cube`.
     Cube,
+    /// So many layers, seen as an array.
+    Array(u32),
 }
 
 impl Shape {
@@ -83,6 +88,15 @@ impl Shape {
         match self {
             Shape::Flat => 1,
             Shape::Cube => 6,
+            Shape::Array(layers) => layers,
+        }
+    }
+
+    /// The view of all its layers that stores and fetches take.
+    fn view_type(self) -> vk::ImageViewType {
+        match self {
+            Shape::Flat => vk::ImageViewType::TYPE_2D,
+            Shape::Cube | Shape::Array(_) => vk::ImageViewType::TYPE_2D_ARRAY,
         }
     }
 }
@@ -94,8 +108,10 @@ pub struct Image {
     name: String,
     pub format: Format,
     pub shape: Shape,
-    /// Width and height in pixels.
+    /// Width and height in pixels, of level 0.
     pub size: [u32; 2],
+    /// Mip levels; each has half the side of the one before, rounded down, and at least 1.
+    pub levels: u32,
 }
 
 /// Frees the image when nobody needs it any more.
@@ -104,8 +120,10 @@ pub(super) struct Owner {
     pub raw: vk::Image,
     view: vk::ImageView,
     cube: Option<vk::ImageView>,
-    /// One a layer, to draw into.
+    /// One a layer, to draw into level 0.
     layers: Vec<vk::ImageView>,
+    /// One a mip level with all its layers, to store into.
+    levels: Vec<vk::ImageView>,
     allocation: Option<Allocation>,
     reserved: u64,
 }
@@ -120,6 +138,21 @@ impl Image {
         size: [u32; 2],
         shape: Shape,
     ) -> Result<Image> {
+        Self::with_levels(device, name, format, size, shape, 1)
+    }
+
+    /// An image with mip levels.
+    ///
+    /// # Errors
+    /// As [`Image::new`]; more layers than the device allows count as too large.
+    pub fn with_levels(
+        device: &Arc<Device>,
+        name: &str,
+        format: Format,
+        size: [u32; 2],
+        shape: Shape,
+        levels: u32,
+    ) -> Result<Image> {
         let limit = device.max_image_side();
         if size.iter().any(|&s| s == 0 || s > limit) {
             return Err(Error::Device(format!(
@@ -129,8 +162,16 @@ impl Image {
                 device.info().name
             )));
         }
+        let most = device.max_image_layers();
+        if shape.layers() > most {
+            return Err(Error::Device(format!(
+                "{name}: {} layers, but {} allows {most}",
+                shape.layers(),
+                device.info().name
+            )));
+        }
         let flags = match shape {
-            Shape::Flat => vk::ImageCreateFlags::empty(),
+            Shape::Flat | Shape::Array(_) => vk::ImageCreateFlags::empty(),
             Shape::Cube => vk::ImageCreateFlags::CUBE_COMPATIBLE,
         };
         let info = vk::ImageCreateInfo::default()
@@ -138,7 +179,7 @@ impl Image {
             .image_type(vk::ImageType::TYPE_2D)
             .format(format.raw())
             .extent(vk::Extent3D { width: size[0], height: size[1], depth: 1 })
-            .mip_levels(1)
+            .mip_levels(levels)
             .array_layers(shape.layers())
             .samples(vk::SampleCountFlags::TYPE_1)
             .tiling(vk::ImageTiling::OPTIMAL)
@@ -158,6 +199,7 @@ impl Image {
             view: vk::ImageView::null(),
             cube: None,
             layers: Vec::new(),
+            levels: Vec::new(),
             allocation: None,
             reserved: requirements.size,
         };
@@ -168,8 +210,9 @@ impl Image {
         owner.allocation = Some(allocation);
         bound.map_err(|e| device.fail("vkBindImageMemory", name, e))?;
         device.name(raw, name);
-        owner.make_views(name, format, shape)?;
-        let image = Image { owner: Arc::new(owner), name: name.to_owned(), format, shape, size };
+        owner.make_views(name, format, shape, levels)?;
+        let (owner, name) = (Arc::new(owner), name.to_owned());
+        let image = Image { owner, name, format, shape, size, levels };
         image.enter_general()?;
         Ok(image)
     }
@@ -183,17 +226,22 @@ impl Image {
     }
 
     /// The view a shader variable of this kind wants, or why there is none.
-    pub(super) fn bound_view(&self, kind: BindingKind) -> Result<vk::ImageView, String> {
-        let array = self.shape == Shape::Cube;
+    /// A storage variable sees one mip level, a texture all of them.
+    pub(super) fn bound_view(
+        &self,
+        kind: BindingKind,
+        level: u32,
+    ) -> Result<vk::ImageView, String> {
+        let array = self.shape != Shape::Flat;
         match kind {
             BindingKind::Texture { cube: true, .. } => {
                 self.owner.cube.ok_or_else(|| format!("{} is no cube", self.name))
             }
-            BindingKind::Texture { array: wanted, .. }
-            | BindingKind::Storage { array: wanted, .. }
-                if wanted == array =>
-            {
-                Ok(self.owner.view)
+            BindingKind::Texture { array: wanted, .. } if wanted == array => Ok(self.owner.view),
+            BindingKind::Storage { array: wanted } if wanted == array => {
+                let views = &self.owner.levels;
+                let missing = || format!("{} has {} levels", self.name, views.len());
+                views.get(level as usize).copied().ok_or_else(missing)
             }
             _ => Err(format!(
                 "{} is {}, the shader wants {kind:?}",
@@ -204,7 +252,7 @@ impl Image {
     }
 
     pub(super) fn range(&self) -> vk::ImageSubresourceRange {
-        range(self.format, self.shape)
+        range(self.format, self.shape, self.levels)
     }
 
     fn enter_general(&self) -> Result<()> {
@@ -263,16 +311,16 @@ impl Image {
     }
 }
 
-fn range(format: Format, shape: Shape) -> vk::ImageSubresourceRange {
+fn range(format: Format, shape: Shape, levels: u32) -> vk::ImageSubresourceRange {
     vk::ImageSubresourceRange::default()
         .aspect_mask(format.aspect())
-        .level_count(1)
+        .level_count(levels)
         .layer_count(shape.layers())
 }
 
 impl Owner {
-    fn make_views(&mut self, name: &str, format: Format, shape: Shape) -> Result<()> {
-        let whole = range(format, shape);
+    fn make_views(&mut self, name: &str, format: Format, shape: Shape, levels: u32) -> Result<()> {
+        let whole = range(format, shape, levels);
         let new = |kind, range| {
             let info = vk::ImageViewCreateInfo::default()
                 .image(self.raw)
@@ -284,21 +332,14 @@ impl Owner {
                 .map_err(|e| self.device.fail("vkCreateImageView", name, e))
         };
         let flat = vk::ImageViewType::TYPE_2D;
-        let mut layers = Vec::new();
-        for layer in 0..shape.layers() {
-            layers.push(new(flat, whole.base_array_layer(layer).layer_count(1))?);
-        }
-        let (view, cube) = match shape {
-            Shape::Flat => (new(flat, whole)?, None),
-            Shape::Cube if format == Format::DepthStencil => {
-                (new(vk::ImageViewType::TYPE_2D_ARRAY, whole)?, None)
-            }
-            Shape::Cube => (
-                new(vk::ImageViewType::TYPE_2D_ARRAY, whole)?,
-                Some(new(vk::ImageViewType::CUBE, whole)?),
-            ),
-        };
-        (self.layers, self.view, self.cube) = (layers, view, cube);
+        let layer = |layer| whole.base_array_layer(layer).layer_count(1).level_count(1);
+        let layers: Result<_> = (0..shape.layers()).map(|l| new(flat, layer(l))).collect();
+        let level = |level| whole.base_mip_level(level).level_count(1);
+        let levels: Result<_> = (0..levels).map(|l| new(shape.view_type(), level(l))).collect();
+        let view = new(shape.view_type(), whole);
+        let is_cube = shape == Shape::Cube && format != Format::DepthStencil;
+        let cube = is_cube.then(|| new(vk::ImageViewType::CUBE, whole)).transpose();
+        (self.layers, self.levels, self.view, self.cube) = (layers?, levels?, view?, cube?);
         Ok(())
     }
 }
@@ -308,7 +349,8 @@ impl Drop for Owner {
         // SAFETY: frames hold an owner until their submit was waited for: nothing uses it now. A
         // view that was never made is null, which Vulkan ignores.
         unsafe {
-            for view in self.layers.iter().copied().chain(self.cube).chain([self.view]) {
+            let parts = self.layers.iter().chain(&self.levels).copied();
+            for view in parts.chain(self.cube).chain([self.view]) {
                 self.device.raw.destroy_image_view(view, None);
             }
             self.device.raw.destroy_image(self.raw, None);

@@ -37,5 +37,6 @@ pub use shader::{Binding, BindingKind, Defines, Shaders};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sampler {
     Nearest,
+    /// Between texels, and between mip levels where there are any.
     Linear,
 }

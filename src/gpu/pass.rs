@@ -14,7 +14,11 @@ use super::{
 use crate::error::{Error, Result};
 
 enum Resource<'f> {
-    Image { image: &'f Image, written: bool },
+    /// `level`: the mip level written, `None` where the image is only read.
+    Image {
+        image: &'f Image,
+        level: Option<u32>,
+    },
     Slice(Slice),
     Sampler(Sampler),
     Structure(vk::AccelerationStructureKHR),
@@ -43,6 +47,14 @@ pub(super) enum Program<'f> {
     Graphics(&'f GraphicsPipeline),
 }
 
+/// A colour attachment: its dump's name, the image, the first layer drawn into.
+pub(super) struct Colour<'f> {
+    name: &'static str,
+    pub image: &'f Image,
+    pub first: u32,
+    pub load: Load,
+}
+
 /// A pass being put together. `over`, `over_pixels`, `indirect`, `draw`, `clear`, `fill`, `build`
 /// and `place` record it; errors met on the way come out there.
 #[must_use = "a pass records nothing until over, draw, clear or another of its ends is called"]
@@ -51,7 +63,7 @@ pub struct Pass<'f> {
     name: String,
     pub(super) program: Program<'f>,
     bound: Vec<Bound<'f>>,
-    pub(super) colours: Vec<(&'static str, &'f Image, Load)>,
+    pub(super) colours: Vec<Colour<'f>>,
     pub(super) depth_stencil: Option<(&'f Image, Load, Load)>,
     error: Option<Error>,
 }
@@ -82,8 +94,19 @@ impl<'f> Pass<'f> {
     }
 
     /// The next colour attachment; `name` is its dump's.
-    pub fn colour(mut self, name: &'static str, image: &'f Image, load: Load) -> Self {
-        self.colours.push((name, image, load));
+    pub fn colour(self, name: &'static str, image: &'f Image, load: Load) -> Self {
+        self.colour_from(name, image, 0, load)
+    }
+
+    /// The next colour attachment, drawn into from a layer on.
+    pub fn colour_from(
+        mut self,
+        name: &'static str,
+        image: &'f Image,
+        first: u32,
+        load: Load,
+    ) -> Self {
+        self.colours.push(Colour { name, image, first, load });
         self
     }
 
@@ -100,12 +123,17 @@ impl<'f> Pass<'f> {
 
     /// A texture.
     pub fn sample(self, name: &'static str, image: &'f Image) -> Self {
-        self.bind(name, Resource::Image { image, written: false })
+        self.bind(name, Resource::Image { image, level: None })
     }
 
-    /// A storage image the pass writes.
+    /// A storage image the pass writes; of one with mip levels, the largest.
     pub fn store(self, name: &'static str, image: &'f Image) -> Self {
-        self.bind(name, Resource::Image { image, written: true })
+        self.store_level(name, image, 0)
+    }
+
+    /// One mip level of a storage image the pass writes. Dumps show level 0 alone.
+    pub fn store_level(self, name: &'static str, image: &'f Image, level: u32) -> Self {
+        self.bind(name, Resource::Image { image, level: Some(level) })
     }
 
     pub fn buffer(self, name: &'static str, buffer: &Buffer) -> Self {
@@ -251,10 +279,10 @@ impl<'f> Pass<'f> {
                 *buffer = slice.descriptor();
             }
             (
-                &Resource::Image { image: i, .. },
+                &Resource::Image { image: i, level },
                 BindingKind::Texture { .. } | BindingKind::Storage { .. },
             ) => {
-                let view = i.bound_view(kind).map_err(|e| self.wrong(e))?;
+                let view = i.bound_view(kind, level.unwrap_or(0)).map_err(|e| self.wrong(e))?;
                 *image = image.image_view(view).image_layout(vk::ImageLayout::GENERAL);
             }
             (&Resource::Sampler(sampler), BindingKind::Sampler) => {
@@ -283,7 +311,7 @@ impl<'f> Pass<'f> {
             }
         }
         let depth_stencil = self.depth_stencil.iter().map(|(image, ..)| *image);
-        for image in self.colours.iter().map(|(_, image, _)| *image).chain(depth_stencil) {
+        for image in self.colours.iter().map(|colour| colour.image).chain(depth_stencil) {
             self.frame.keep(image.owner.clone());
         }
         self.frame.begin_label(&self.name);
@@ -299,11 +327,11 @@ impl<'f> Pass<'f> {
             return Ok(());
         }
         for bound in &self.bound {
-            if let Resource::Image { image, written: true } = bound.resource {
+            if let Resource::Image { image, level: Some(0) } = bound.resource {
                 self.frame.dump(&self.name, bound.name, image)?;
             }
         }
-        for (name, image, _) in &self.colours {
+        for Colour { name, image, .. } in &self.colours {
             self.frame.dump(&self.name, name, image)?;
         }
         Ok(())
