@@ -19,7 +19,7 @@ pub use composite::Composite;
 pub use direct_view::DirectView;
 pub use fallback::{FallbackStage, Filling};
 pub use footprint::Footprint;
-pub use layered_capture::{LayeredCapture, LayeredCaptureStage};
+pub use layered_capture::{LayeredCapture, LayeredCaptureStage, Sides};
 pub use record::{RecordMode, ReflectionRecord};
 pub use scene::GpuScene;
 pub use scene_structure::SceneStructure;
