@@ -3,9 +3,10 @@
 // surface point lies best on that ray. Names are the paper's; lines of its figures 4 and 7 stand
 // where they are carried out.
 #import bindings::layers::{MapTexel, layer_colour, layer_identity, layer_inverse_depth, layered_map, texel_direction}
-#import bindings::record::{count, write_record}
+#import bindings::record::{RecordTargets, count, record_targets, write_record}
 #import bindings::scene::{environment, objects}
-#import bindings::view::{MirrorPoint, mirror_point, pixel_count}
+#import bindings::view::{MirrorPoint, is_asked, mirror_point, mirror_point_at, pixel_count}
+#import common::cover::cover
 #import common::record::{Chain, environment_chain, found_chain}
 #import common::reflection_plane::is_parallel
 #import z_buffered_map::arc::{arc_texels, search_hybrid, search_image, search_vectors}
@@ -29,18 +30,10 @@ const SKIPPED: u32 = 2u;
 const FETCHES: u32 = 3u;
 const BACKGROUND: u32 = 4u;
 
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= pixel_count() {
-        return;
-    }
-    let at = mirror_point(id.x);
-    if !at.departs {
-        return;
-    }
+fn answer(at: MirrorPoint) -> Chain {
     var chain = reflection(at);
     chain.lobe = at.lobe;
-    write_record(at.pixel, chain);
+    return chain;
 }
 
 fn reflection(at: MirrorPoint) -> Chain {
@@ -104,3 +97,34 @@ fn background(at: MirrorPoint) -> Chain {
     let radiance = environment(at.outgoing);
     return environment_chain(radiance, at.outgoing, at.position, objects[at.reflector].rank);
 }
+
+#ifdef STAGE_FRAGMENT
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return vec4(cover(index), 0.0, 1.0);
+}
+
+@fragment @early_depth_test(force)
+fn fragment(@builtin(position) position: vec4<f32>) -> RecordTargets {
+    let pixel = vec2<u32>(position.xy);
+    if !is_asked(pixel) {
+        discard;
+    }
+    let at = mirror_point_at(pixel);
+    if !at.departs {
+        discard;
+    }
+    return record_targets(answer(at));
+}
+#else
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= pixel_count() {
+        return;
+    }
+    let at = mirror_point(id.x);
+    if at.departs {
+        write_record(at.pixel, answer(at));
+    }
+}
+#endif

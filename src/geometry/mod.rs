@@ -9,6 +9,7 @@ pub mod cube;
 pub mod mesh;
 pub mod optics;
 pub mod polynomial;
+pub mod random;
 pub mod reflection_plane;
 pub mod shapes;
 pub mod texel_line;

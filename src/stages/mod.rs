@@ -1,6 +1,6 @@
 //! What every method shares on the GPU: the scene, the direct view, the reflectors' footprint, the
-//! captured map with one layer or several, the tree for rays, the record, the fallback and the composite. Each is written here once, so two
-//! methods differ only in what they find.
+//! captured map with one layer or several, the tree for rays, the record, the fallback and the
+//! composite. Each is written here once, so two methods differ only in what they find.
 
 mod capture;
 mod composite;
@@ -8,6 +8,7 @@ mod direct_view;
 mod fallback;
 mod footprint;
 mod layered_capture;
+mod pixel_pass;
 mod record;
 mod scene;
 mod scene_structure;
@@ -20,6 +21,7 @@ pub use direct_view::DirectView;
 pub use fallback::{FallbackStage, Filling};
 pub use footprint::Footprint;
 pub use layered_capture::{LayeredCapture, LayeredCaptureStage, Sides};
+pub use pixel_pass::{PixelPass, PixelStage};
 pub use record::{RecordMode, ReflectionRecord};
 pub use scene::GpuScene;
 pub use scene_structure::SceneStructure;

@@ -3,6 +3,7 @@
 
 mod published;
 
+use super::params::STAGE;
 use super::{Changes, Family, Kind, MethodInfo, Param};
 
 pub const INFO: MethodInfo = MethodInfo {
@@ -78,6 +79,7 @@ pub const INFO: MethodInfo = MethodInfo {
             needs: None,
             doc: "a map for each group of reflectors, or one for all, without any of them in it",
         },
+        STAGE,
     ],
     limits: "what no kept layer holds shows the background; what nearly touches the reflector vanishes; \
              a thin thing may lose to what is behind it; no self-reflection",

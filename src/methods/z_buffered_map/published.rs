@@ -26,10 +26,11 @@ use bytemuck::{Pod, Zeroable};
 
 use super::super::{ReflectionMethod, Setup, Want};
 use crate::error::Result;
-use crate::gpu::{ComputePipeline, Device, Frame};
+use crate::gpu::{Device, Frame};
 use crate::scene::ObjectId;
 use crate::stages::{
-    GpuScene, LayeredCapture, LayeredCaptureStage, RecordMode, ReflectionRecord, Sides, View,
+    GpuScene, LayeredCapture, LayeredCaptureStage, PixelPass, RecordMode, ReflectionRecord, Sides,
+    View,
 };
 
 /// WGSL `Params` of `shaders/z_buffered_map/published.wgsl`.
@@ -45,7 +46,7 @@ pub struct Params {
 struct Published {
     device: Arc<Device>,
     stage: LayeredCaptureStage,
-    reflect: ComputePipeline,
+    reflect: PixelPass,
     params: Params,
     mode: RecordMode,
     size: u32,
@@ -58,8 +59,7 @@ struct Published {
 pub(super) fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     let values = setup.values;
     let layers = values.u32("layers");
-    let mut defines = setup.mode.defines();
-    defines.push(("LAYERS", layers));
+    let mut defines = vec![("LAYERS", layers)];
     match values.get("search") {
         "vector" => defines.push(("SEARCH_VECTOR", 1)),
         "image" => defines.push(("SEARCH_IMAGE", 1)),
@@ -72,7 +72,7 @@ pub(super) fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     Ok(Box::new(Published {
         device: setup.device.clone(),
         stage: LayeredCaptureStage::new(setup.device, setup.mode, sides)?,
-        reflect: ComputePipeline::new(setup.device, "z_buffered_map/published.wgsl", &defines)?,
+        reflect: setup.pixel_pass("z_buffered_map/published.wgsl", &defines)?,
         params: Params {
             steps: values.u32("steps"),
             unit: values.f32("unit_m"),
@@ -124,12 +124,10 @@ impl ReflectionMethod for Published {
         record: &mut ReflectionRecord,
     ) -> Result<()> {
         for (objects, map) in &self.maps {
-            view.list_pixels(frame, scene, objects)?;
-            let pass = frame.pass("z-buffered-map/reflect").compute(&self.reflect);
-            map.bind(record.bind(view.bind(scene.bind(pass))))
-                .uniform("params", &self.params)
-                .optional()
-                .indirect(&view.footprint.pixels)?;
+            let name = "z-buffered-map/reflect";
+            self.reflect.run(frame, name, (scene, view), record, objects, |pass| {
+                map.bind(pass).uniform("params", &self.params)
+            })?;
         }
         Ok(())
     }
