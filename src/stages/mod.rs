@@ -20,7 +20,7 @@ pub use composite::Composite;
 pub use direct_view::DirectView;
 pub use fallback::{FallbackStage, Filling};
 pub use footprint::Footprint;
-pub use layered_capture::{LayeredCapture, LayeredCaptureStage};
+pub use layered_capture::{LayeredCapture, LayeredCaptureStage, Sides};
 pub use pixel_pass::{PixelPass, PixelStage};
 pub use record::{RecordMode, ReflectionRecord};
 pub use scene::GpuScene;
