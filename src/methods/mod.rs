@@ -4,12 +4,14 @@
 //! `tests/methods_vs_truth.rs` and its figures.
 
 pub mod case;
+mod distance_impostor;
 mod environment_map;
 pub mod nearest;
 mod none;
 pub mod params;
 mod planar_mirror;
 mod ray_traced;
+mod screen_space;
 mod truth;
 
 use std::sync::Arc;
@@ -128,5 +130,12 @@ pub struct MethodInfo {
 }
 
 /// The methods a user can name.
-pub static METHODS: &[MethodInfo] =
-    &[truth::INFO, none::INFO, ray_traced::INFO, environment_map::INFO, planar_mirror::INFO];
+pub static METHODS: &[MethodInfo] = &[
+    truth::INFO,
+    none::INFO,
+    ray_traced::INFO,
+    environment_map::INFO,
+    planar_mirror::INFO,
+    distance_impostor::INFO,
+    screen_space::INFO,
+];
