@@ -234,6 +234,36 @@ fn wrong_lines_are_named_with_what_is_valid() {
             "material = \"red\"\nposition = [0, 0, 0]\nkeys = [{ time_s = 1, position = [0, 0, 0] }]",
             "test.toml:17: two kinds of motion; valid: keys alone, or position, rotation_deg and orbit",
         ),
+        (
+            "material = \"mirror\"",
+            "material = \"red\"\nscatter = { count = 0, seed = 1, low = [0, 0, 0], high = [4, 4, 4] }",
+            "test.toml:20: 0 is out of range; valid: 1 to 10000",
+        ),
+        (
+            "material = \"mirror\"",
+            "material = \"red\"\nscatter = { count = 3, seed = 1, low = [0, 0, 0], top = [4, 4, 4] }",
+            "test.toml:20: unknown key `top`; valid: `count`, `seed`, `low`, `high`, `scale`, `turn`, `clear`",
+        ),
+        (
+            "material = \"mirror\"",
+            "material = \"red\"\nscatter = { count = 3, seed = 1, low = [0, 0, 0], high = [-4, 4, 4] }",
+            "test.toml:20: low is above high; valid: opposite corners of a box",
+        ),
+        (
+            "material = \"mirror\"",
+            "material = \"red\"\nscatter = { count = 3, seed = 1, low = [0, 0, 0], high = [4, 4, 4], scale = [2, 1] }",
+            "test.toml:20: scale = [2, 1] falls; valid: the smallest, the largest",
+        ),
+        (
+            "material = \"mirror\"",
+            "material = \"red\"\nscatter = { count = 3, seed = 1, low = [0, 0, 0], high = [4, 4, 4], clear = [{ centre = [2, 2, 2], radius = 9 }] }",
+            "test.toml:20: no clear place in 1000 tries; valid: a box with room for each",
+        ),
+        (
+            "material = \"mirror\"",
+            "material = \"red\"\nposition = [0, 0, 0]\nscatter = { count = 3, seed = 1, low = [0, 0, 0], high = [4, 4, 4] }",
+            "test.toml:21: scatter and a place of its own; valid: scatter alone, or the others",
+        ),
     ];
     let mut wrong = Vec::new();
     for (line, replacement, expected) in cases {

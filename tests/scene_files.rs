@@ -276,3 +276,44 @@ scale = 0.5
     write("a.mtl", "newmtl Iron\nKd 0.5 0.5 0\nnewmtl Blue steel\nKd 0 0 1\n");
     assert_ne!(scene.hash, scene::load(path.to_str().unwrap()).unwrap().hash);
 }
+
+#[test]
+fn clutter_is_scattered_clear_of_mirror_and_camera() {
+    for count in [60, 150, 400] {
+        let scene = scene::load(&format!("clutter-{count}")).unwrap();
+        let moment = scene.at(0);
+        let balls: Vec<ObjectId> = ["red", "ochre", "green", "blue", "violet"]
+            .map(|c| format!("{c}-*"))
+            .iter()
+            .flat_map(|pattern| scene.select(pattern))
+            .collect();
+        assert_eq!(balls.len(), count);
+        let mut places = BTreeSet::new();
+        for &ball in &balls {
+            let Some(Surface::Sphere { radius }) = scene.objects[ball as usize].surface else {
+                panic!("no ball")
+            };
+            assert!((0.15..=0.4).contains(&radius), "radius {radius}");
+            let place = position(&moment, ball);
+            assert!(place.abs().max_element() <= 4.6);
+            assert!(place.length() >= 1.0 + radius);
+            assert!(place.distance(moment.camera.eye) >= radius + 0.7);
+            places.insert(place.to_array().map(f32::to_bits));
+        }
+        assert_eq!(places.len(), count, "every ball has a place of its own");
+    }
+}
+
+#[test]
+fn sticks_point_every_way() {
+    let scene = scene::load("sticks").unwrap();
+    let sticks: Vec<_> = scene.objects.iter().filter(|object| object.group.contains('-')).collect();
+    assert_eq!(sticks.len(), 200);
+    assert!(sticks.iter().all(|stick| stick.mesh == sticks[0].mesh), "one mesh for all");
+    let axes = sticks.iter().map(|stick| match stick.motion {
+        Motion::Still(pose) => Vec3::from(pose.matrix3.y_axis),
+        _ => panic!("a stick moves"),
+    });
+    let squares = axes.map(|axis| axis * axis).sum::<Vec3>() / 200.0;
+    assert!((squares - 1.0 / 3.0).abs().max_element() < 0.1, "{squares}");
+}

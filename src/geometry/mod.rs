@@ -9,6 +9,7 @@ pub mod cube;
 pub mod mesh;
 pub mod optics;
 pub mod polynomial;
+pub mod random;
 pub mod shapes;
 pub mod tree;
 pub mod wide_tree;

@@ -22,9 +22,9 @@ pub use case::{Case, Selected};
 pub use params::{Kind, Param, Values};
 
 use crate::error::Result;
-use crate::gpu::{Device, Frame};
+use crate::gpu::{Defines, Device, Frame};
 use crate::scene::ObjectId;
-use crate::stages::{GpuScene, RecordMode, ReflectionRecord, View};
+use crate::stages::{GpuScene, PixelPass, PixelStage, RecordMode, ReflectionRecord, View};
 
 /// One paper's answer to "which scene point does this mirror pixel show?"
 pub trait ReflectionMethod {
@@ -98,6 +98,18 @@ pub struct Setup<'a> {
     pub size: [u32; 2],
     /// The reflectors it will be asked for.
     pub reflectors: &'a [ObjectId],
+}
+
+impl Setup<'_> {
+    /// A shader over the reflectors' pixels, in the form that the parameter [`params::STAGE`] asks for.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Shader`] where it does not compile.
+    pub fn pixel_pass(&self, file: &str, defines: Defines) -> Result<PixelPass> {
+        let fragment = self.values.is(params::STAGE.name, "fragment");
+        let stage = if fragment { PixelStage::Fragment } else { PixelStage::Compute };
+        PixelPass::new(self.device, file, defines, self.mode, stage)
+    }
 }
 
 /// Makes a method for a case.

@@ -8,16 +8,21 @@ use toml::Spanned;
 
 use super::camera;
 use super::format::{
-    EnvironmentFile, KeyFile, LightingFile, MaterialFile, ObjectFile, SceneFile, ShapeFile, Span,
+    EnvironmentFile, KeyFile, LightingFile, MaterialFile, ObjectFile, ScatterFile, SceneFile,
+    ShapeFile, Span,
 };
 use super::image::decode;
 use super::parts::{PartMaterial, parts};
+use super::scatter::{Placement, placements};
 use super::source::Source;
 use super::values::{Positive, Triple, colour, triple};
 use crate::error::Result;
 use crate::scene::{
     Environment, Glass, Image, Lighting, Material, Mirror, Motion, Object, Pattern, Scene, Surface,
 };
+
+/// The materials of the file, by name.
+type Defined = BTreeMap<String, Spanned<MaterialFile>>;
 
 /// Everything gathered so far.
 pub struct Builder {
@@ -166,11 +171,7 @@ impl Builder {
         Ok(patterns)
     }
 
-    fn object(
-        &mut self,
-        file: &ObjectFile,
-        defined: &BTreeMap<String, Spanned<MaterialFile>>,
-    ) -> Result<()> {
+    fn object(&mut self, file: &ObjectFile, defined: &Defined) -> Result<()> {
         let group = self.object_name(&file.name)?;
         if let (ShapeFile::Obj(obj), Some(own)) = (file.shape.get_ref(), &file.material)
             && !obj.materials.is_empty()
@@ -178,11 +179,55 @@ impl Builder {
             let message = "both `material` and `materials`; valid: one of the two";
             return Err(self.source.error(&own.span(), message));
         }
-        let motion = self.motion(file)?;
-        for part in self.make(file)? {
+        match &file.scatter {
+            None => {
+                let motion = self.motion(file)?;
+                let scale = file.scale.map_or(1.0, |s| s.0);
+                let made = self.make(file, scale)?;
+                self.add(file, defined, &group, made, motion)
+            }
+            Some(scatter) => self.scattered(file, defined, &group, scatter),
+        }
+    }
+
+    /// Copies `group-1`, `group-2`, ... of an object, each an object of its own.
+    fn scattered(
+        &mut self,
+        file: &ObjectFile,
+        defined: &Defined,
+        group: &str,
+        scatter: &Spanned<ScatterFile>,
+    ) -> Result<()> {
+        let placed = file.position.is_some() || file.rotation_deg.is_some() || file.scale.is_some();
+        if placed || file.orbit.is_some() || file.keys.is_some() {
+            let message = "scatter and a place of its own; valid: scatter alone, or the others";
+            return Err(self.source.error(&scatter.span(), message));
+        }
+        let whole = parts(&mut self.source, file.shape.get_ref(), &file.shape.span())?;
+        let points = whole.iter().flat_map(|part| &part.mesh.positions);
+        let reach = points.map(|p| p.length()).fold(0.0, f32::max);
+        let placements = placements(&self.source, scatter, reach)?;
+        for (number, Placement { scale, pose }) in (1..).zip(placements) {
+            let made = self.make(file, scale)?;
+            let name = format!("{group}-{number}");
+            self.add(file, defined, &name, made, Motion::Still(pose))?;
+        }
+        Ok(())
+    }
+
+    /// The parts of an object into the scene.
+    fn add(
+        &mut self,
+        file: &ObjectFile,
+        defined: &Defined,
+        group: &str,
+        made: Vec<MadePart>,
+        motion: Motion,
+    ) -> Result<()> {
+        for part in made {
             let name = match &part.name {
                 Some(part) => format!("{group}.{}", part.replace(|c| !is_name_character(c), "-")),
-                None => group.clone(),
+                None => group.to_owned(),
             };
             if self.objects.iter().any(|object| object.name == name) {
                 let message =
@@ -192,7 +237,7 @@ impl Builder {
             let material = self.part_material(file, part.material, defined)?;
             self.objects.push(Object {
                 name,
-                group: group.clone(),
+                group: group.to_owned(),
                 mesh: part.mesh,
                 material,
                 surface: part.surface,
@@ -215,9 +260,8 @@ impl Builder {
         Ok(text.clone())
     }
 
-    /// The meshes of an object, from the store where an equal shape was made before.
-    fn make(&mut self, file: &ObjectFile) -> Result<Vec<MadePart>> {
-        let scale = file.scale.map_or(1.0, |s| s.0);
+    /// The meshes of an object at a scale, from the store where an equal shape was made before.
+    fn make(&mut self, file: &ObjectFile, scale: f32) -> Result<Vec<MadePart>> {
         let shape = file.shape.get_ref();
         let key = format!("{scale} {}", &self.source.text()[file.shape.span()]);
         if let Some(made) = self.made.get(&key) {
@@ -239,7 +283,7 @@ impl Builder {
         &mut self,
         file: &ObjectFile,
         material: PartMaterial,
-        defined: &BTreeMap<String, Spanned<MaterialFile>>,
+        defined: &Defined,
     ) -> Result<usize> {
         let (name, span) = match (material, &file.material) {
             (_, Some(own)) => (own.get_ref().clone(), own.span()),

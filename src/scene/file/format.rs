@@ -188,6 +188,35 @@ pub struct ObjectFile {
     pub scale: Option<Positive>,
     pub orbit: Option<OrbitFile>,
     pub keys: Option<Vec<Spanned<KeyFile>>>,
+    pub scatter: Option<Spanned<ScatterFile>>,
+}
+
+/// Copies of an object in random places.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScatterFile {
+    pub count: Whole<1, 10_000>,
+    pub seed: Whole<0, { u32::MAX }>,
+    pub low: Triple,
+    pub high: Triple,
+    #[serde(default = "own_size")]
+    pub scale: [Positive; 2],
+    #[serde(default)]
+    pub turn: bool,
+    #[serde(default)]
+    pub clear: Vec<ClearFile>,
+}
+
+fn own_size() -> [Positive; 2] {
+    [Positive(1.0); 2]
+}
+
+/// A ball that copies stay out of.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ClearFile {
+    pub centre: Triple,
+    pub radius: Positive,
 }
 
 #[derive(Deserialize)]

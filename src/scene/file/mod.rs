@@ -8,6 +8,7 @@ mod obj;
 mod obj_check;
 mod parts;
 mod patches;
+mod scatter;
 mod smooth;
 mod source;
 mod values;
