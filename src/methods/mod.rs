@@ -4,12 +4,14 @@
 //! `tests/methods_vs_truth.rs` and its figures.
 
 pub mod case;
+mod distance_impostor;
 mod environment_map;
 pub mod nearest;
 mod none;
 pub mod params;
 mod planar_mirror;
 mod ray_traced;
+mod screen_space;
 mod truth;
 mod z_buffered_map;
 
@@ -148,4 +150,6 @@ pub static METHODS: &[MethodInfo] = &[
     environment_map::INFO,
     planar_mirror::INFO,
     z_buffered_map::INFO,
+    distance_impostor::INFO,
+    screen_space::INFO,
 ];
