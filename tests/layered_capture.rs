@@ -166,14 +166,14 @@ fn compare(read: &Read, rays: &Rays, sides: Sides) {
     for (i, face, place) in texels() {
         let mut expected = rays.behind(face, place);
         expected.retain(|behind| sides == Sides::Both || behind.facing);
-        for layer in 0..LAYERS as usize {
+        for (layer, compared) in compared.iter_mut().enumerate() {
             let at = layer * layer_texels + i;
             let w = f32::from_bits(read.surface[at][0]);
             let Some(behind) = expected.get(layer) else {
                 wrong += u32::from(w != 0.0 || read.ids[at] != [NO_OBJECT, 0]);
                 continue;
             };
-            compared[layer] += 1;
+            *compared += 1;
             let same = read.ids[at][0] == behind.object && (w / behind.w - 1.0).abs() < 1e-3;
             wrong += u32::from(!same);
             // Beside an edge of two triangles of an object either may be drawn.
