@@ -4,11 +4,12 @@
 
 mod capture;
 mod composite;
+mod depth_pyramid;
 mod direct_view;
 mod fallback;
 mod footprint;
-mod pixel_pass;
 mod layered_capture;
+mod pixel_pass;
 mod record;
 mod scene;
 mod scene_structure;
@@ -17,11 +18,12 @@ mod view;
 
 pub use capture::{Capture, CaptureStage};
 pub use composite::Composite;
+pub use depth_pyramid::DepthPyramid;
 pub use direct_view::DirectView;
 pub use fallback::{FallbackStage, Filling};
 pub use footprint::Footprint;
-pub use pixel_pass::{PixelPass, PixelStage};
 pub use layered_capture::{LayeredCapture, LayeredCaptureStage};
+pub use pixel_pass::{PixelPass, PixelStage};
 pub use record::{RecordMode, ReflectionRecord};
 pub use scene::GpuScene;
 pub use scene_structure::SceneStructure;
