@@ -157,7 +157,7 @@ fn the_pyramid_meets_the_pixel_that_a_walk_over_all_meets() {
             }
         }
         println!("{size:?}: {found} found, {visits:?} visits, {differ} unlike in double precision");
-        assert!(size[0] < 10 || found > RAYS / 5, "{size:?}: only {found} met anything");
+        assert!(size[0] < 10 || found > RAYS / 10, "{size:?}: only {found} met anything");
         assert!(size[0] < 100 || visits[0] < 0.8 * visits[1], "{size:?}: {visits:?} visits");
         assert!(differ < RAYS / 1000, "{size:?}: {differ} unlike a walk in double precision");
     }
