@@ -14,13 +14,25 @@ const SIZE: [u32; 2] = [128, 96];
 
 /// A case, a scene, and the band its `bad_share` at 1 px lies in. Environment maps of a near scene
 /// are wrong nearly everywhere; what is right shows the environment or the far floor.
-const BANDS: [(&str, &str, [f64; 2]); 7] = [
+const BANDS: [(&str, &str, [f64; 2]); 19] = [
     ("environment-map", "sky", [0.0, 0.0]),
     ("environment-map", "columns", [0.3, 0.75]),
     ("environment-map", "patow-room", [0.8, 1.0]),
     ("environment-map:index=surface", "patow-room", [0.9, 1.0]),
     ("environment-map", "glass-sphere", [0.95, 1.0]),
     ("environment-map", "hall-of-mirrors", [0.5, 0.7]),
+    ("distance-impostor", "sky", [0.0, 0.0]),
+    ("distance-impostor", "columns", [0.15, 0.35]),
+    ("distance-impostor@revised", "columns", [0.01, 0.05]),
+    ("distance-impostor", "patow-room", [0.02, 0.07]),
+    ("distance-impostor@revised", "patow-room", [0.01, 0.035]),
+    ("distance-impostor@revised", "lecture", [0.03, 0.12]),
+    ("distance-impostor@revised", "stress-pole", [0.002, 0.03]),
+    ("distance-impostor@revised", "stress-gap", [0.002, 0.03]),
+    ("screen-space", "sky", [0.0, 0.0]),
+    ("screen-space", "columns", [0.2, 0.45]),
+    ("screen-space", "patow-room", [0.7, 0.95]),
+    ("screen-space", "lecture", [0.3, 0.55]),
     ("planar-mirror", "lecture", [0.0, 0.002]),
 ];
 

@@ -45,6 +45,18 @@ fn both_forms_give_the_same_record_where_reflectors_overlap() {
 }
 
 #[test]
+fn other_methods_have_both_forms_too() {
+    let (session, scene) = (Session::open(), scene::load("two-spheres").unwrap());
+    for [compute, fragment] in [
+        ["distance-impostor@revised", "distance-impostor@revised:stage=fragment"],
+        ["screen-space", "screen-space:stage=fragment"],
+        ["screen-space:miss=missing", "screen-space:miss=missing,stage=fragment"],
+    ] {
+        same(&session, &scene, compute, fragment);
+    }
+}
+
+#[test]
 fn reflectors_that_share_a_stencil_value_keep_apart() {
     let (session, mut scene) = (Session::open(), scene::load("two-spheres").unwrap());
     let [first, second] = scene.reflectors()[..] else { panic!("two spheres") };

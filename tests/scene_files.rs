@@ -305,6 +305,40 @@ fn clutter_is_scattered_clear_of_mirror_and_camera() {
 }
 
 #[test]
+fn the_poles_stand_off_the_wall_and_clear_of_the_sphere() {
+    let scene = scene::load("stress-pole").unwrap();
+    let moment = scene.at(0);
+    let wall = position(&moment, only(&scene, "wall"));
+    let sphere = position(&moment, only(&scene, "sphere"));
+    for (number, gap) in (1..).zip([0.1, 0.2, 0.4, 0.7, 1.0]) {
+        let pole = only(&scene, &format!("pole-{number}"));
+        let Some(Surface::Cylinder { radius, .. }) = scene.objects[pole as usize].surface else {
+            panic!("no pole")
+        };
+        assert_eq!(radius, 0.02);
+        let place = position(&moment, pole);
+        assert!((wall.z - place.z - gap).abs() < 1e-5, "{place}");
+        assert!(place.xz().distance(sphere.xz()) > 1.5);
+    }
+}
+
+#[test]
+fn the_box_leaves_the_sphere_from_a_millimetre_to_a_metre() {
+    let scene = scene::load("stress-gap").unwrap();
+    let cube = only(&scene, "box");
+    let gap = |frame: u32| {
+        let moment = scene.at(frame);
+        let centre = position(&moment, only(&scene, "sphere"));
+        let sphere = moment.poses[cube as usize].inverse().transform_point3(centre);
+        // The face square to the sphere's centre is that of -z.
+        assert!(sphere.xy().length() < 1e-4, "{sphere}");
+        -sphere.z - 0.15 - 1.0
+    };
+    assert!((gap(0) - 0.001).abs() < 2e-5 && (gap(144) - 1.0).abs() < 2e-5);
+    assert!((1..145).all(|frame| gap(frame) > gap(frame - 1)));
+}
+
+#[test]
 fn sticks_point_every_way() {
     let scene = scene::load("sticks").unwrap();
     let sticks: Vec<_> = scene.objects.iter().filter(|object| object.group.contains('-')).collect();

@@ -17,6 +17,8 @@ fn every_shader_compiles() {
             &[("RECORD_FULL", 1)],
             &[("GLASS", 1)],
             &[("RAY_QUERY", 1)],
+            &[("RADIAL", 1)],
+            &[("MISS_ENVIRONMENT", 1)],
             &parts,
             &fragment[..1],
             &fragment,

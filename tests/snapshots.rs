@@ -15,7 +15,7 @@ use snapshot_support::{EDGE_SHARE, Picture, difference};
 const SIZE: [u32; 2] = [96, 64];
 
 /// Name, scene, case, frame.
-const SNAPSHOTS: [(&str, &str, &str, u32); 9] = [
+const SNAPSHOTS: [(&str, &str, &str, u32); 11] = [
     ("columns-environment-map", "columns", "environment-map", 40),
     ("patow-room-environment-map", "patow-room", "environment-map", 0),
     ("patow-room-index-surface", "patow-room", "environment-map:index=surface", 0),
@@ -23,6 +23,8 @@ const SNAPSHOTS: [(&str, &str, &str, u32); 9] = [
     ("teapot-environment-map", "teapot", "environment-map", 0),
     ("glass-sphere-environment-map", "glass-sphere", "environment-map", 0),
     ("lecture-planar-mirror", "lecture", "planar-mirror", 0),
+    ("columns-distance-impostor", "columns", "distance-impostor@revised", 40),
+    ("lecture-screen-space", "lecture", "screen-space", 0),
     ("glass-sphere-ray-traced", "glass-sphere", "ray-traced", 0),
     ("hall-of-mirrors-ray-traced", "hall-of-mirrors", "ray-traced", 60),
 ];

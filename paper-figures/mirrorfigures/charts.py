@@ -7,7 +7,7 @@ from .figure import QUIET
 
 # Okabe & Ito's palette: told apart by the colour-blind too.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-MARKERS = "osD^vP"
+MARKERS = "osD^vPX"
 GRID = "#e7eaee"
 PANELS_ACROSS = 3
 
@@ -22,7 +22,7 @@ def speed_against_accuracy(rows_by_scene: dict[str, list[dict]], floor: str = "n
     """
     drawn = [r for rows in rows_by_scene.values() for r in rows if r["method"] != floor]
     cases = dict.fromkeys(row["case"] for row in drawn)
-    style = {case: (COLOURS[i % 6], MARKERS[i % 6]) for i, case in enumerate(cases)}
+    style = {case: (COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)]) for i, case in enumerate(cases)}
     across = min(len(rows_by_scene), PANELS_ACROSS)
     down = -(-len(rows_by_scene) // across)
     inches = (2.9 * across + 0.6, 2.9 * down + 0.6)

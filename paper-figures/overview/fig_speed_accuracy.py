@@ -9,7 +9,15 @@ from mirrorfigures.charts import speed_against_accuracy
 from mirrorfigures.text import ratio
 
 # What would be done today comes first: ratios are to it.
-CASES = ["ray-traced", "environment-map", "environment-map:index=surface", "none"]
+CASES = [
+    "ray-traced",
+    "environment-map",
+    "environment-map:index=surface",
+    "distance-impostor@published",
+    "distance-impostor@revised",
+    "screen-space",
+    "none",
+]
 SCENES = {
     "columns": CASES,
     "patow-room": CASES,

@@ -1,8 +1,9 @@
 // Distance impostors: the texel of the captured map that the mirrored ray meets, by the distances
 // stored with it (Szirmay-Kalos et al. 2005).
-#import bindings::record::{count, write_record}
+#import bindings::record::{RecordTargets, count, record_targets, write_record}
 #import bindings::scene::{environment, objects}
-#import bindings::view::{MirrorPoint, mirror_point, pixel_count}
+#import bindings::view::{MirrorPoint, is_asked, mirror_point, mirror_point_at, pixel_count}
+#import common::cover::cover
 #import common::cube::cube_texel
 #import common::record::{Chain, environment_chain, found_chain}
 #import distance_impostor::search::{params, search, search_work, texel_of}
@@ -29,7 +30,7 @@ fn texel_chain(radiance: vec3<f32>, direction: vec3<f32>, bounce: vec3<f32>, ran
     return chain;
 }
 
-fn impostor_chain(at: MirrorPoint) -> Chain {
+fn answer(at: MirrorPoint) -> Chain {
     let met = search(at.position - params.centre, at.outgoing);
     let rank = objects[at.reflector].rank;
     var chain: Chain;
@@ -49,6 +50,25 @@ fn impostor_chain(at: MirrorPoint) -> Chain {
     return chain;
 }
 
+#ifdef STAGE_FRAGMENT
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return vec4(cover(index), 0.0, 1.0);
+}
+
+@fragment @early_depth_test(force)
+fn fragment(@builtin(position) position: vec4<f32>) -> RecordTargets {
+    let pixel = vec2<u32>(position.xy);
+    if !is_asked(pixel) {
+        discard;
+    }
+    let at = mirror_point_at(pixel);
+    if !at.departs {
+        discard;
+    }
+    return record_targets(answer(at));
+}
+#else
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= pixel_count() {
@@ -56,6 +76,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let at = mirror_point(id.x);
     if at.departs {
-        write_record(at.pixel, impostor_chain(at));
+        write_record(at.pixel, answer(at));
     }
 }
+#endif

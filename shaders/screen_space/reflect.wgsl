@@ -1,9 +1,10 @@
 // Screen-space reflection: the mirrored ray is followed through the picture itself.
-#import bindings::record::{count, write_record}
+#import bindings::record::{RecordTargets, count, record_targets, write_record}
 #import bindings::scene::{environment, materials, objects}
-#import bindings::view::{MirrorPoint, camera, mirror_point, pixel_count}
-#import common::record::{Chain, STATUS_MISSING, environment_chain, found_chain}
-#import screen_space::trace::{Seen, screen_ray, seen_along}
+#import bindings::view::{MirrorPoint, camera, is_asked, mirror_point, mirror_point_at, pixel_count}
+#import common::cover::cover
+#import common::record::{Chain, NO_OBJECT, environment_chain, found_chain}
+#import screen_space::trace::{screen_ray, seen_along}
 
 @group(0) @binding(3) var direct_colour: texture_2d<f32>;
 @group(0) @binding(4) var direct_depth: texture_2d<f32>;
@@ -28,7 +29,7 @@ fn is_reflector(object: u32) -> bool {
 
 // What the screen shows along the mirrored ray; status missing where the ray leaves it, passes behind
 // what is on it, or comes to another reflector.
-fn screen_chain(at: MirrorPoint) -> Chain {
+fn answer(at: MirrorPoint) -> Chain {
     let size = vec2<f32>(textureDimensions(direct_depth));
     let seen = seen_along(screen_ray(camera, size, at.position, at.outgoing), at.reflector);
     let rank = objects[at.reflector].rank;
@@ -39,7 +40,7 @@ fn screen_chain(at: MirrorPoint) -> Chain {
         missed = environment_chain(environment(at.outgoing), at.outgoing, at.position, rank);
         missed.flag = true;
 #else
-        missed.status = STATUS_MISSING;
+        missed.object = NO_OBJECT;
 #endif
         return missed;
     }
@@ -53,17 +54,33 @@ fn screen_chain(at: MirrorPoint) -> Chain {
     return found_chain(colour, point, at.position, seen.object, triangle, rank);
 }
 
+#ifdef STAGE_FRAGMENT
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return vec4(cover(index), 0.0, 1.0);
+}
+
+@fragment @early_depth_test(force)
+fn fragment(@builtin(position) position: vec4<f32>) -> RecordTargets {
+    let pixel = vec2<u32>(position.xy);
+    if !is_asked(pixel) {
+        discard;
+    }
+    let at = mirror_point_at(pixel);
+    if !at.departs {
+        discard;
+    }
+    return record_targets(answer(at));
+}
+#else
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= pixel_count() {
         return;
     }
     let at = mirror_point(id.x);
-    if !at.departs {
-        return;
-    }
-    let chain = screen_chain(at);
-    if chain.status != STATUS_MISSING {
-        write_record(at.pixel, chain);
+    if at.departs {
+        write_record(at.pixel, answer(at));
     }
 }
+#endif

@@ -20,7 +20,7 @@ struct Limits {
     pad: u32,
 }
 @group(0) @binding(0) var<uniform> limits: Limits;
-// Nearest and farthest depth of each cell's surfaces, as bits; see `pyramid.wgsl`.
+// Nearest and farthest depth of each cell's surfaces, as bits; see `stages/depth_pyramid.wgsl`.
 @group(0) @binding(1) var pyramid: texture_2d<u32>;
 @group(0) @binding(2) var direct_object: texture_2d<u32>;
 
@@ -129,7 +129,8 @@ fn seen_along(ray: ScreenRay, own: u32) -> Seen {
         );
         if inside {
             seen.visits += 1u;
-            let here = min(cell, vec2<i32>(textureDimensions(pyramid, level)) - 1);
+            // Not by textureDimensions, which lavapipe answers for one level a workgroup.
+            let here = min(cell, max(size >> vec2(level), vec2(1)) - 1);
             let surfaces = bitcast<vec2<f32>>(textureLoad(pyramid, here, level).xy);
             let a = depth_at(ray, time);
             let b = depth_at(ray, min(out, 1.0));

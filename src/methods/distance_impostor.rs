@@ -16,11 +16,12 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 
+use super::params::STAGE;
 use super::{Changes, Family, Kind, MethodInfo, Param, ReflectionMethod, Setup, Want};
 use crate::error::Result;
 use crate::gpu::{ComputePipeline, Device, Format, Frame, Image, Sampler, Shape};
 use crate::scene::ObjectId;
-use crate::stages::{Capture, CaptureStage, GpuScene, ReflectionRecord, View};
+use crate::stages::{Capture, CaptureStage, GpuScene, PixelPass, ReflectionRecord, View};
 
 pub const INFO: MethodInfo = MethodInfo {
     id: "distance-impostor",
@@ -62,6 +63,7 @@ pub const INFO: MethodInfo = MethodInfo {
             needs: None,
             doc: "secant steps; after a march inside the step that crossed",
         },
+        STAGE,
     ],
     limits: "what is hidden from the map's centre is not there; no self-reflection",
     passes: &[
@@ -100,7 +102,7 @@ struct DistanceImpostor {
     device: Arc<Device>,
     stage: CaptureStage,
     measure: ComputePipeline,
-    reflect: ComputePipeline,
+    reflect: PixelPass,
     size: u32,
     march: u32,
     refine: u32,
@@ -113,13 +115,11 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     if values.is("depth", "radial") {
         form.push(("RADIAL", 1));
     }
-    let mut defines = setup.mode.defines();
-    defines.extend(&form);
     Ok(Box::new(DistanceImpostor {
         device: device.clone(),
         stage: CaptureStage::new(device)?,
         measure: ComputePipeline::new(device, "distance_impostor/distances.wgsl", &form)?,
-        reflect: ComputePipeline::new(device, "distance_impostor/reflect.wgsl", &defines)?,
+        reflect: setup.pixel_pass("distance_impostor/reflect.wgsl", &form)?,
         size: values.u32("size"),
         march: values.u32("march"),
         refine: values.u32("refine"),
@@ -168,7 +168,6 @@ impl ReflectionMethod for DistanceImpostor {
         record: &mut ReflectionRecord,
     ) -> Result<()> {
         for Impostor { objects, capture, distances } in &self.impostors {
-            view.list_pixels(frame, scene, objects)?;
             let params = Params {
                 centre: capture.centre.to_array(),
                 size: self.size,
@@ -176,18 +175,17 @@ impl ReflectionMethod for DistanceImpostor {
                 refine: self.refine,
                 ..Zeroable::zeroed()
             };
-            let pass = frame.pass("distance-impostor/reflect").compute(&self.reflect);
-            record
-                .bind(view.bind(scene.bind(pass)))
-                .uniform("params", &params)
-                .sample("distances", distances)
-                .sample("capture_radiance", &capture.radiance)
-                .sample("capture_point", &capture.point)
-                .optional()
-                .sample("capture_ids", &capture.ids)
-                .optional()
-                .sampler("linear_filter", Sampler::Linear)
-                .indirect(&view.footprint.pixels)?;
+            let name = "distance-impostor/reflect";
+            self.reflect.run(frame, name, (scene, view), record, objects, |pass| {
+                pass.uniform("params", &params)
+                    .sample("distances", distances)
+                    .sample("capture_radiance", &capture.radiance)
+                    .sample("capture_point", &capture.point)
+                    .optional()
+                    .sample("capture_ids", &capture.ids)
+                    .optional()
+                    .sampler("linear_filter", Sampler::Linear)
+            })?;
         }
         Ok(())
     }

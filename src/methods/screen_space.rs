@@ -12,10 +12,11 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::params::STAGE;
 use super::{Changes, Family, Kind, MethodInfo, Param, ReflectionMethod, Setup, Want};
 use crate::error::Result;
-use crate::gpu::{ComputePipeline, Format, Frame, Image, Shape};
-use crate::stages::{GpuScene, ReflectionRecord, View};
+use crate::gpu::Frame;
+use crate::stages::{DepthPyramid, GpuScene, PixelPass, ReflectionRecord, View};
 
 pub const INFO: MethodInfo = MethodInfo {
     id: "screen-space",
@@ -48,6 +49,7 @@ pub const INFO: MethodInfo = MethodInfo {
             needs: None,
             doc: "what a ray without an answer shows: the environment (flagged), or nothing",
         },
+        STAGE,
     ],
     limits: "only what is on the screen, from the front; one bounce; no refraction",
     passes: &[
@@ -72,57 +74,26 @@ pub struct Limits {
 }
 
 struct ScreenSpace {
-    base: ComputePipeline,
-    reduce: ComputePipeline,
-    reflect: ComputePipeline,
-    /// Nearest and farthest depth of each cell, two floats as bits; a level has half the cells of the
-    /// one before.
-    pyramid: Image,
+    pyramid: DepthPyramid,
+    reflect: PixelPass,
     limits: Limits,
 }
 
 fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
-    let (device, values, size) = (setup.device, setup.values, setup.size);
-    let mut defines = setup.mode.defines();
+    let values = setup.values;
+    let mut defines = Vec::new();
     if values.is("miss", "environment") {
         defines.push(("MISS_ENVIRONMENT", 1));
     }
-    // Down to a single cell.
-    let levels = size[0].max(size[1]).ilog2() + 1;
-    let (format, flat) = (Format::Rg32Uint, Shape::Flat);
-    Ok(Box::new(ScreenSpace {
-        base: ComputePipeline::new(device, "screen_space/pyramid_base.wgsl", &[])?,
-        reduce: ComputePipeline::new(device, "screen_space/pyramid.wgsl", &[])?,
-        reflect: ComputePipeline::new(device, "screen_space/reflect.wgsl", &defines)?,
-        pyramid: Image::with_levels(device, "depth pyramid", format, size, flat, levels)?,
-        limits: Limits {
-            thickness: values.f32("thickness"),
-            steps: values.u32("steps"),
-            levels,
-            pad: 0,
-        },
-    }))
-}
-
-impl ScreenSpace {
-    fn build_pyramid(&self, frame: &mut Frame, depth: &Image) -> Result<()> {
-        frame
-            .pass("screen-space/pyramid-base")
-            .compute(&self.base)
-            .sample("depth", depth)
-            .store("bounds", &self.pyramid)
-            .over_pixels(self.pyramid.size)?;
-        for level in 1..self.pyramid.levels {
-            frame
-                .pass("screen-space/pyramid")
-                .compute(&self.reduce)
-                .sample("below", &self.pyramid)
-                .uniform("level_below", &(level - 1))
-                .store_level("bounds", &self.pyramid, level)
-                .over_pixels(self.pyramid.size.map(|side| (side >> level).max(1)))?;
-        }
-        Ok(())
-    }
+    let pyramid = DepthPyramid::new(setup.device, setup.size)?;
+    let limits = Limits {
+        thickness: values.f32("thickness"),
+        steps: values.u32("steps"),
+        levels: pyramid.cells.levels,
+        pad: 0,
+    };
+    let reflect = setup.pixel_pass("screen_space/reflect.wgsl", &defines)?;
+    Ok(Box::new(ScreenSpace { pyramid, reflect, limits }))
 }
 
 impl ReflectionMethod for ScreenSpace {
@@ -137,20 +108,21 @@ impl ReflectionMethod for ScreenSpace {
         view: &View,
         record: &mut ReflectionRecord,
     ) -> Result<()> {
-        self.build_pyramid(frame, &view.direct.depth)?;
-        view.list_pixels(frame, scene, view.reflectors)?;
-        let pass = frame.pass("screen-space/reflect").compute(&self.reflect);
-        let mut pass = record
-            .bind(view.bind(scene.bind(pass)))
-            .uniform("limits", &self.limits)
-            .sample("pyramid", &self.pyramid)
-            .sample("direct_object", &view.direct.object)
-            .sample("direct_colour", &view.direct.colour)
-            .sample("direct_depth", &view.direct.depth);
-        if let Some(triangle) = &view.direct.triangle {
-            pass = pass.sample("direct_triangle", triangle);
-        }
-        pass.indirect(&view.footprint.pixels)
+        self.pyramid.build(frame, "screen-space", &view.direct.depth)?;
+        let (direct, reflectors) = (view.direct, view.reflectors);
+        let name = "screen-space/reflect";
+        self.reflect.run(frame, name, (scene, view), record, reflectors, |pass| {
+            let pass = pass
+                .uniform("limits", &self.limits)
+                .sample("pyramid", &self.pyramid.cells)
+                .sample("direct_object", &direct.object)
+                .sample("direct_colour", &direct.colour)
+                .sample("direct_depth", &direct.depth);
+            match &direct.triangle {
+                Some(triangle) => pass.sample("direct_triangle", triangle),
+                None => pass,
+            }
+        })
     }
 }
 

@@ -4,6 +4,7 @@
 
 mod capture;
 mod composite;
+mod depth_pyramid;
 mod direct_view;
 mod fallback;
 mod footprint;
@@ -17,6 +18,7 @@ mod view;
 
 pub use capture::{Capture, CaptureStage};
 pub use composite::Composite;
+pub use depth_pyramid::DepthPyramid;
 pub use direct_view::DirectView;
 pub use fallback::{FallbackStage, Filling};
 pub use footprint::Footprint;
