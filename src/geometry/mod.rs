@@ -6,10 +6,13 @@ pub mod bezier;
 pub mod bvh;
 pub mod camera;
 pub mod cube;
+pub mod latlong;
 pub mod mesh;
 pub mod optics;
 pub mod polynomial;
+pub mod proxy;
 pub mod shapes;
+pub mod sphere_map;
 pub mod tree;
 pub mod wide_tree;
 
