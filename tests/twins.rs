@@ -5,9 +5,9 @@ mod gpu_support;
 use std::f32::consts::FRAC_PI_3;
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 use gpu_support::Session;
-use mirrorbench::geometry::{Camera, Projection, cube, optics};
+use mirrorbench::geometry::{Camera, Projection, cube, latlong, optics, proxy, sphere_map};
 use mirrorbench::gpu::{Buffer, ComputePipeline, Frame};
 use mirrorbench::measure::statistics::SplitMix64;
 use mirrorbench::scene::{
@@ -75,6 +75,55 @@ fn cube_maps() {
         assert!(out[0].xy().abs_diff_eq(uv, 1e-6), "{d}: {} instead of {uv}", out[0]);
         assert!(out[1].xyz().normalize().abs_diff_eq(*d, 1e-6), "{d} came back as {}", out[1]);
     }
+}
+
+#[test]
+fn flat_maps() {
+    let (session, scene) = (Session::open(), scene::load("sky").unwrap());
+    let mut given = directions(11);
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+    // The sphere map's singular direction, the polar map's poles and its seam.
+    given.splice(0..6, axes.into_iter().flat_map(|axis| [axis, -axis]));
+    given[6] = Vec3::new(1e-19, -1e-19, -1.0);
+    let inputs: Vec<_> = given.iter().map(|d| d.extend(0.0)).collect();
+    let outputs = run(&session, &scene, "flat_maps", &inputs, 4 * inputs.len(), &camera());
+    for (d, out) in given.iter().zip(outputs.chunks(4)) {
+        assert!(out.iter().all(|v| v.is_finite()), "{d}: {out:?}");
+        let (st, uv) = (sphere_map::place(*d), latlong::place(*d));
+        // On the rim any place will do.
+        let on_rim = d.z < -0.999_999;
+        assert!(on_rim || out[0].xy().abs_diff_eq(st, 1e-5), "{d}: {} instead of {st}", out[0]);
+        let across = (out[0].z - uv.x).abs();
+        assert!(across.min(1.0 - across) < 1e-5 && (out[0].w - uv.y).abs() < 1e-5, "{d}: {uv}");
+        assert!(out[1].xyz().abs_diff_eq(*d, 2e-3), "{d} came back as {}", out[1]);
+        assert!(out[2].xyz().abs_diff_eq(*d, 1e-5), "{d} came back as {}", out[2]);
+        let normal = sphere_map::normal(2.0 * d.xy());
+        // Where the square root is steepest.
+        assert!(out[3].xyz().abs_diff_eq(normal, 1e-3), "{d}: {} instead of {normal}", out[3]);
+    }
+}
+
+#[test]
+fn proxies() {
+    let (session, scene) = (Session::open(), scene::load("sky").unwrap());
+    let (starts, mut along) = (directions(12), directions(13));
+    along.splice(0..2, [Vec3::X, Vec3::NEG_Y]);
+    let inputs: Vec<Vec4> = starts
+        .iter()
+        .zip(&along)
+        .flat_map(|(s, d)| [(1.1 * s).extend(0.0), d.extend(0.0)])
+        .collect();
+    let outputs = run(&session, &scene, "proxies", &inputs, 2 * starts.len(), &camera());
+    let mut at_an_edge = 0;
+    for ((s, d), out) in starts.iter().zip(&along).zip(outputs.chunks(2)) {
+        let sphere = proxy::from_sphere(1.1 * s, *d, 1.2);
+        let high = Vec3::new(0.9, 1.1, 1.3);
+        let boxed = proxy::from_box(1.1 * s, *d, Vec3::splat(-1.0), high);
+        assert!(out[0].xyz().abs_diff_eq(sphere, 1e-4), "{s} {d}: {} not {sphere}", out[0]);
+        // A ray from outside that grazes the box may hit it on one side only.
+        at_an_edge += u32::from(!out[1].xyz().abs_diff_eq(boxed, 1e-4));
+    }
+    assert!(at_an_edge <= 2, "{at_an_edge} differ");
 }
 
 #[test]

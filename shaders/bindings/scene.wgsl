@@ -2,7 +2,7 @@
 // Rust twins: scene/shading.rs for the functions, stages/scene.rs for the structs.
 #define_import_path bindings::scene
 
-#import common::angle::{PI, angle}
+#import common::latlong::latlong_place
 
 struct Vertex {
     position: vec3<f32>,
@@ -167,9 +167,7 @@ fn environment(d: vec3<f32>) -> vec3<f32> {
             return mix(light.horizon, light.nadir, -d.y);
         }
         case ENVIRONMENT_LATLONG: {
-            let u = 0.5 + angle(d.x, -d.z) / (2.0 * PI);
-            let v = angle(length(d.xz), d.y) / PI;
-            return bilinear(images[light.image], vec2(u, v), true);
+            return bilinear(images[light.image], latlong_place(d), true);
         }
         default: {
             return light.horizon;

@@ -11,22 +11,26 @@ struct CubeTexel {
 // Where a direction (any length but 0) meets the cube.
 fn cube_texel(d: vec3<f32>) -> CubeTexel {
     let a = abs(d);
-    var face = 0u;
-    var major = a.x;
-    var s = vec2<f32>();
+    var face = select(0u, 1u, d.x < 0.0);
     if a.z >= a.x && a.z >= a.y {
         face = select(4u, 5u, d.z < 0.0);
-        major = a.z;
-        s = vec2(select(d.x, -d.x, d.z < 0.0), -d.y);
     } else if a.y >= a.x {
         face = select(2u, 3u, d.y < 0.0);
-        major = a.y;
-        s = vec2(d.x, select(d.z, -d.z, d.y < 0.0));
-    } else {
-        face = select(0u, 1u, d.x < 0.0);
-        s = vec2(select(-d.z, d.z, d.x < 0.0), -d.y);
     }
-    return CubeTexel(face, 0.5 * (s / major + 1.0));
+    let on_face = cube_face_plane(face, d);
+    return CubeTexel(face, 0.5 * (on_face.xy / on_face.z + 1.0));
+}
+
+// A direction in the axes of a face: right, down, outwards.
+fn cube_face_plane(face: u32, d: vec3<f32>) -> vec3<f32> {
+    switch face {
+        case 0u: { return vec3(-d.z, -d.y, d.x); }
+        case 1u: { return vec3(d.z, -d.y, -d.x); }
+        case 2u: { return vec3(d.x, d.z, d.y); }
+        case 3u: { return vec3(d.x, -d.z, -d.y); }
+        case 4u: { return vec3(d.x, -d.y, d.z); }
+        default: { return vec3(-d.x, -d.y, -d.z); }
+    }
 }
 
 // The direction (not of unit length) of a position on a face.

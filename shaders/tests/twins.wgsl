@@ -3,6 +3,9 @@
 #import bindings::scene::{environment, materials, shade}
 #import common::camera::{Camera, arriving, eye_direction, facing}
 #import common::cube::{cube_direction, cube_texel}
+#import common::latlong::{latlong_direction, latlong_place}
+#import common::proxy::{from_box, from_sphere}
+#import common::sphere_map::{ball_normal, sphere_direction, sphere_place}
 
 @group(0) @binding(0) var<storage, read> inputs: array<vec4<f32>>;
 @group(0) @binding(1) var<storage, read_write> outputs: array<vec4<f32>>;
@@ -13,6 +16,28 @@ fn cube(@builtin(global_invocation_id) id: vec3<u32>) {
     let texel = cube_texel(inputs[id.x].xyz);
     outputs[2u * id.x] = vec4(vec3(texel.uv, f32(texel.face)), 0.0);
     outputs[2u * id.x + 1u] = vec4(cube_direction(texel.face, texel.uv), 0.0);
+}
+
+// The place of a direction in a sphere and in a polar map, and back.
+@compute @workgroup_size(64)
+fn flat_maps(@builtin(global_invocation_id) id: vec3<u32>) {
+    let d = inputs[id.x].xyz;
+    let st = sphere_place(d);
+    let uv = latlong_place(d);
+    outputs[4u * id.x] = vec4(st, uv);
+    outputs[4u * id.x + 1u] = vec4(sphere_direction(st), 0.0);
+    outputs[4u * id.x + 2u] = vec4(latlong_direction(uv), 0.0);
+    outputs[4u * id.x + 3u] = vec4(ball_normal(2.0 * d.xy), 0.0);
+}
+
+// Where rays leave the sphere of radius 1.2 and the box from -1 to (0.9, 1.1, 1.3): start in xyz of the
+// first input, direction of the second.
+@compute @workgroup_size(64)
+fn proxies(@builtin(global_invocation_id) id: vec3<u32>) {
+    let start = inputs[2u * id.x].xyz;
+    let along = inputs[2u * id.x + 1u].xyz;
+    outputs[2u * id.x] = vec4(from_sphere(start, along, 1.2), 0.0);
+    outputs[2u * id.x + 1u] = vec4(from_box(start, along, vec3(-1.0), vec3(0.9, 1.1, 1.3)), 0.0);
 }
 
 @compute @workgroup_size(64)

@@ -1,11 +1,9 @@
 //! The one shading function. Its twin on the GPU is `shaders/bindings/scene.wgsl`: the formulas,
 //! and the order of their operations, are the same.
 
-use std::f32::consts::{PI, TAU};
+use glam::{Vec2, Vec3};
 
-use glam::{Vec2, Vec3, Vec3Swizzles};
-
-use crate::geometry::angle::angle;
+use crate::geometry::latlong;
 
 use super::{Environment, Image, Material, ObjectId, Pattern, Scene};
 
@@ -49,17 +47,9 @@ pub fn environment(scene: &Scene, direction: Vec3) -> Vec3 {
             horizon + (end - horizon) * direction.y.abs()
         }
         Environment::LatLong { image } => {
-            bilinear(&scene.images[image], lat_long(direction), Edge::Clamp)
+            bilinear(&scene.images[image], latlong::place(direction), Edge::Clamp)
         }
     }
-}
-
-/// Image coordinates of a unit direction in a latitude-longitude image: -z in the middle, +y on
-/// top.
-pub fn lat_long(direction: Vec3) -> Vec2 {
-    let u = 0.5 + angle(direction.x, -direction.z) / TAU;
-    let v = angle(direction.xz().length(), direction.y) / PI;
-    Vec2::new(u, v)
 }
 
 /// What lies above the top and below the bottom row of an image. Columns always wrap.
@@ -225,10 +215,10 @@ mod tests {
             (Vec3::NEG_X, 0.25, 0.5),
             (Vec3::new(0.0, 0.5f32.sqrt(), -(0.5f32.sqrt())), 0.5, 0.25),
         ] {
-            assert!(lat_long(direction).abs_diff_eq(Vec2::new(u, v), 1e-6), "{direction}");
+            assert!(latlong::place(direction).abs_diff_eq(Vec2::new(u, v), 1e-6), "{direction}");
         }
-        assert_eq!(lat_long(Vec3::Y).y, 0.0);
-        assert_eq!(lat_long(Vec3::NEG_Y).y, 1.0);
+        assert_eq!(latlong::place(Vec3::Y).y, 0.0);
+        assert_eq!(latlong::place(Vec3::NEG_Y).y, 1.0);
         let sky =
             scene(Pattern::Colour(Vec3::ZERO), Environment::LatLong { image: 0 }, vec![four()]);
         assert!((environment(&sky, Vec3::NEG_Z).x - 2.5).abs() < 1e-6);

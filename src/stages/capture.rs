@@ -56,14 +56,25 @@ pub struct Capture {
 
 impl Capture {
     pub fn new(device: &Arc<Device>, name: &str, size: u32) -> Result<Capture> {
-        let image = |what: &str, format| {
-            Image::new(device, &format!("{name} {what}"), format, [size; 2], Shape::Cube)
+        Self::with_levels(device, name, size, 1)
+    }
+
+    /// One whose radiance has room for mip levels, which a capture leaves alone.
+    pub fn with_levels(
+        device: &Arc<Device>,
+        name: &str,
+        size: u32,
+        levels: u32,
+    ) -> Result<Capture> {
+        let image = |what: &str, format, levels| {
+            let name = format!("{name} {what}");
+            Image::with_levels(device, &name, format, [size; 2], Shape::Cube, levels)
         };
         Ok(Capture {
-            radiance: image("radiance", FORMATS[0])?,
-            point: image("point", FORMATS[1])?,
-            ids: image("ids", FORMATS[2])?,
-            depth: image("depth", Format::DepthStencil)?,
+            radiance: image("radiance", FORMATS[0], levels)?,
+            point: image("point", FORMATS[1], 1)?,
+            ids: image("ids", FORMATS[2], 1)?,
+            depth: image("depth", Format::DepthStencil, 1)?,
             centre: Vec3::ZERO,
             size,
         })
