@@ -15,13 +15,15 @@ use snapshot_support::{EDGE_SHARE, Picture, difference};
 const SIZE: [u32; 2] = [96, 64];
 
 /// Name, scene, case, frame.
-const SNAPSHOTS: [(&str, &str, &str, u32); 9] = [
+const SNAPSHOTS: [(&str, &str, &str, u32); 11] = [
     ("columns-environment-map", "columns", "environment-map", 40),
     ("patow-room-environment-map", "patow-room", "environment-map", 0),
     ("patow-room-index-surface", "patow-room", "environment-map:index=surface", 0),
     ("kitchen-environment-map", "kitchen", "environment-map", 150),
     ("teapot-environment-map", "teapot", "environment-map", 0),
     ("glass-sphere-environment-map", "glass-sphere", "environment-map", 0),
+    ("patow-room-z-buffered-map", "patow-room", "z-buffered-map", 0),
+    ("patow-room-z-buffered-map-one-layer", "patow-room", "z-buffered-map:layers=1", 0),
     ("lecture-planar-mirror", "lecture", "planar-mirror", 0),
     ("glass-sphere-ray-traced", "glass-sphere", "ray-traced", 0),
     ("hall-of-mirrors-ray-traced", "hall-of-mirrors", "ray-traced", 60),
