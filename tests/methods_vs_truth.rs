@@ -14,7 +14,7 @@ const SIZE: [u32; 2] = [128, 96];
 
 /// A case, a scene, and the band its `bad_share` at 1 px lies in. Environment maps of a near scene
 /// are wrong nearly everywhere; what is right shows the environment or the far floor.
-const BANDS: [(&str, &str, [f64; 2]); 19] = [
+const BANDS: [(&str, &str, [f64; 2]); 22] = [
     ("environment-map", "sky", [0.0, 0.0]),
     ("environment-map", "columns", [0.3, 0.75]),
     ("environment-map", "patow-room", [0.8, 1.0]),
@@ -34,6 +34,9 @@ const BANDS: [(&str, &str, [f64; 2]); 19] = [
     ("screen-space", "patow-room", [0.7, 0.95]),
     ("screen-space", "lecture", [0.3, 0.55]),
     ("planar-mirror", "lecture", [0.0, 0.002]),
+    ("z-buffered-map", "sky", [0.0, 0.0]),
+    ("z-buffered-map", "patow-room", [0.008, 0.03]),
+    ("z-buffered-map:layers=1", "clutter-60", [0.02, 0.1]),
 ];
 
 #[test]

@@ -22,6 +22,8 @@ const SNAPSHOTS: [(&str, &str, &str, u32); 11] = [
     ("kitchen-environment-map", "kitchen", "environment-map", 150),
     ("teapot-environment-map", "teapot", "environment-map", 0),
     ("glass-sphere-environment-map", "glass-sphere", "environment-map", 0),
+    ("patow-room-z-buffered-map", "patow-room", "z-buffered-map", 0),
+    ("patow-room-z-buffered-map-one-layer", "patow-room", "z-buffered-map:layers=1", 0),
     ("lecture-planar-mirror", "lecture", "planar-mirror", 0),
     ("columns-distance-impostor", "columns", "distance-impostor@revised", 40),
     ("lecture-screen-space", "lecture", "screen-space", 0),

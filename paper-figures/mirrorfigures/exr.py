@@ -32,6 +32,8 @@ class Frame:
     """Id of the object seen directly, NO_OBJECT on the background."""
     reflector: np.ndarray
     """Id of the reflector seen, NO_OBJECT elsewhere."""
+    position: np.ndarray
+    """The reflector's surface point, metres."""
     normal: np.ndarray
     """The reflector's unit shading normal."""
 
@@ -72,6 +74,7 @@ def read_frame(path: Path) -> Frame:
         status=ids("shown.status"),
         direct_object=ids("object.id"),
         reflector=ids("reflector.id"),
+        position=_stack(channels, "position.", "XYZ"),
         normal=_stack(channels, "normal.", "XYZ"),
     )
 

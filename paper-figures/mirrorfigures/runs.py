@@ -55,9 +55,16 @@ class Run:
         return found[0]
 
     def path(self, row: dict) -> list[dict]:
-        """The frames of a followed path, in order, from the arrays beside the results."""
-        arrays = (self.files / f"{row['run']}.frames.json").read_text(encoding="utf-8")
-        return json.loads(arrays)["path"]
+        """The frames of a followed path, in order."""
+        return self._arrays(row)["path"]
+
+    def pass_ms(self, row: dict, name: str) -> list[float]:
+        """GPU milliseconds of a pass in every frame timed, in the order played."""
+        return [frame["passes_gpu_ms"][name] for frame in self._arrays(row)["timed"]]
+
+    def _arrays(self, row: dict) -> dict:
+        """What stands beside the results, a value a frame."""
+        return json.loads((self.files / f"{row['run']}.frames.json").read_text(encoding="utf-8"))
 
 
 def _last_number(stem: str) -> int | None:

@@ -13,7 +13,7 @@ from mirrorfigures.panels import single
 
 def draw(figure):
     single(figure, render("patow-room", "truth", size="600x600"), "ray-traced truth")
-    figure.finding("This is the reference; the claim is about Figure 8, which is not drawn yet.")
+    figure.finding("This is the reference; the claim is about Figure 8, which says how far it holds.")
 
 
 if __name__ == "__main__":

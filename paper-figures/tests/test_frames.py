@@ -34,6 +34,7 @@ def flat_frame(shift: int = 0, size: int = 64) -> Frame:
         status=np.where(found, FOUND, ENVIRONMENT).astype(np.uint32),
         direct_object=np.zeros((size, size), np.uint32),
         reflector=np.zeros((size, size), np.uint32),
+        position=np.zeros((size, size, 3), np.float32),
         normal=np.zeros((size, size, 3), np.float32),
     )
 

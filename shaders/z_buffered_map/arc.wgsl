@@ -6,7 +6,7 @@
 #import common::cube::cube_texel
 #import common::reflection_plane::{direction_at, in_face, on_face}
 #import common::texel_line::{TexelLine, line_between, next_bresenham, next_touched, touched_texels}
-#import z_buffered_map::search::{Search, examine, texel_of}
+#import z_buffered_map::search::{Search, examine, texel_at}
 
 fn next_texel(line: ptr<function, TexelLine>) -> bool {
 #ifdef LINE_TOUCHED
@@ -31,7 +31,8 @@ fn search_line(search: ptr<function, Search>, face: u32, start: vec2<f32>, end: 
 // counted in.
 fn search_vectors(search: ptr<function, Search>, reflector: vec3<f32>, steps: u32) {
     for (var i = 0u; i <= steps; i += 1u) {
-        examine(search, texel_of(direction_at((*search).b, reflector, f32(i) / f32(steps))));
+        let p = direction_at((*search).b, reflector, f32(i) / f32(steps));
+        examine(search, texel_at(cube_texel(p)));
     }
 }
 
@@ -50,22 +51,20 @@ fn search_image(search: ptr<function, Search>) {
 // Section 5, figure 7: steps of t until the face of W is reached, and there a line.
 fn search_hybrid(search: ptr<function, Search>, reflector: vec3<f32>, steps: u32) {
     let goal = cube_texel(reflector);
-    // Fig. 7, line 1: Actual <- B (that is, t <- 0)
-    var actual = cube_texel((*search).b);
     var i = 0u;
+    // Fig. 7, line 1: Actual <- B { that is, t <- 0 }
+    var actual = cube_texel((*search).b);
     // Fig. 7, line 2: While faces of the reflection map indexed by Actual and W are not the same do
-    while actual.face != goal.face && i <= steps {
+    while actual.face != goal.face && i < steps {
         // Fig. 7, line 3: Get pixel indexed by Actual.
-        let last = vec2(i32(layered_map.size) - 1);
-        let place = min(vec2<i32>(actual.uv * f32(layered_map.size)), last);
-        examine(search, MapTexel(actual.face, place));
-        // Fig. 7, line 6: Increment t and use Equation (1) to get new Actual.
+        examine(search, texel_at(actual));
         i += 1u;
+        // Fig. 7, line 6: Increment t and use Equation (1) to get new Actual.
         actual = cube_texel(direction_at((*search).b, reflector, f32(i) / f32(steps)));
     }
-    // Fig. 7, line 7: both vectors index the same face, so
-    // Fig. 7, line 8: Do the DDA traversal in that plane, between the pixels of Actual and W.
+    // "both vectors index the same face, so"
     let size = f32(layered_map.size);
+    // Fig. 7, line 8: Do the DDA traversal in that plane, between the pixels indexed by Actual and W.
     search_line(search, goal.face, size * actual.uv, size * goal.uv);
 }
 

@@ -7,10 +7,11 @@
 #import bindings::scene::{environment, objects}
 #import bindings::view::{MirrorPoint, is_asked, mirror_point, mirror_point_at, pixel_count}
 #import common::cover::cover
+#import common::cube::cube_texel
 #import common::record::{Chain, environment_chain, found_chain}
 #import common::reflection_plane::is_parallel
 #import z_buffered_map::arc::{arc_texels, search_hybrid, search_image, search_vectors}
-#import z_buffered_map::search::{LAYERS, Search, start_search, texel_of}
+#import z_buffered_map::search::{LAYERS, Search, start_search, texel_at}
 
 struct Params {
     // Steps of t.
@@ -43,7 +44,7 @@ fn reflection(at: MirrorPoint) -> Chain {
     // Fig. 4, line 2: if (B . [W]) = +-1
     if is_parallel(b, w) {
         // Fig. 4, line 4: Compute reflection in the direction of B.
-        let texel = texel_of(b);
+        let texel = texel_at(cube_texel(b));
         count(EXAMINED, 1u);
         count(FETCHES, 1u);
         if layer_inverse_depth(texel, 0u) == 0.0 {
@@ -52,12 +53,12 @@ fn reflection(at: MirrorPoint) -> Chain {
         return shown(at, texel, 0u);
     }
     var search = start_search(b, w);
-    // Fig. 4, line 6: For each pixel in (Reflection Plane ∩ Reflection Map) do
 #ifdef SEARCH_VECTOR
     search_vectors(&search, w / params.unit, params.steps);
 #else ifdef SEARCH_IMAGE
     search_image(&search);
 #else
+    // Fig. 4, line 6: For each pixel in (Reflection Plane ∩ Reflection Map) do
     search_hybrid(&search, w / params.unit, params.steps);
 #endif
 #ifdef RECORD_FULL
@@ -92,8 +93,8 @@ fn shown(at: MirrorPoint, texel: MapTexel, layer: u32) -> Chain {
 }
 
 fn background(at: MirrorPoint) -> Chain {
-    // Fig. 4, line 14: Reflect infinity (background, B).
     count(BACKGROUND, 1u);
+    // Fig. 4, line 14: Reflect infinity (background, B).
     let radiance = environment(at.outgoing);
     return environment_chain(radiance, at.outgoing, at.position, objects[at.reflector].rank);
 }

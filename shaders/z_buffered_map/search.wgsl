@@ -3,8 +3,8 @@
 #define_import_path z_buffered_map::search
 
 #import bindings::layers::{MapTexel, layer_inverse_depth, layered_map, texel_direction}
-#import common::cube::cube_texel
-#import common::reflection_plane::{deviation, direction_at}
+#import common::cube::CubeTexel
+#import common::reflection_plane::deviation
 
 // Layers of the map.
 #ifdef LAYERS
@@ -44,12 +44,10 @@ fn start_search(b: vec3<f32>, w: vec3<f32>) -> Search {
     return search;
 }
 
-// The texel that a direction indexes.
-fn texel_of(direction: vec3<f32>) -> MapTexel {
-    let at = cube_texel(direction);
-    let size = i32(layered_map.size);
-    let place = vec2<i32>(at.uv * f32(size));
-    return MapTexel(at.face, clamp(place, vec2(0), vec2(size - 1)));
+// The texel of a place on the cube.
+fn texel_at(at: CubeTexel) -> MapTexel {
+    let last = vec2(i32(layered_map.size) - 1);
+    return MapTexel(at.face, clamp(vec2<i32>(at.uv * f32(layered_map.size)), vec2(0), last));
 }
 
 fn examine(search: ptr<function, Search>, texel: MapTexel) {

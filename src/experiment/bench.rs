@@ -191,7 +191,16 @@ impl Outcome {
     pub fn save(&self, folder: &OutputFolder) -> Result<PathBuf> {
         let timed = self.timing.iter().flat_map(Timing::frames).map(|(frame, times)| {
             let prepare: f64 = times.prepare.iter().map(|pass| pass.gpu_ms).sum();
-            json!({"frame": frame, "gpu_ms": times.frame_gpu_ms, "prepare_gpu_ms": prepare})
+            // Passes of one name in a frame count with their sum.
+            let mut passes = serde_json::Map::new();
+            for pass in &times.passes {
+                let so_far = passes.get(&pass.name).and_then(serde_json::Value::as_f64);
+                passes.insert(pass.name.clone(), json!(so_far.unwrap_or(0.0) + pass.gpu_ms));
+            }
+            json!({
+                "frame": frame, "gpu_ms": times.frame_gpu_ms, "prepare_gpu_ms": prepare,
+                "passes_gpu_ms": passes,
+            })
         });
         let compared = self.evidence.frames.iter();
         let compared =
