@@ -1,12 +1,11 @@
 """Distance impostors: how fine the search must be.
 
-To be seen: The share of bad mirror pixels against the steps marched from the reflector to infinity, a
-line a number of secant steps inside the step that crossed; dotted, the published search, which starts
-at the texel in the mirrored direction, marches nowhere and corrects by secants alone. Left the columns,
-in the middle the lecture's flat mirror, right the poles of two centimetres' radius: only the share
-that shows the wrong object.
-
-Expected: planes need one secant; what is thinner than a step leaks, so the poles need short ones.
+To be seen: The share of bad mirror pixels against the steps marched from the reflector to infinity,
+a line a number of secant steps inside the step that crossed; dotted, the published search, which
+starts at the texel in the mirrored direction, marches nowhere and corrects by secants alone. Left
+the columns, in the middle the lecture's flat mirror, right the poles of two centimetres' radius:
+only the share that shows the wrong object. Expected: planes need one secant; what is thinner than a
+step leaks, so the poles need short ones.
 """
 
 import matplotlib.pyplot as plt
