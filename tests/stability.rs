@@ -3,7 +3,7 @@
 
 mod truth_support;
 
-use glam::{Vec2, Vec3};
+use glam::{Mat2, UVec2, Vec2, Vec3};
 use mirrorbench::measure::statistics::SplitMix64;
 use mirrorbench::measure::{PathFrame, PathMeasure, Stability};
 use mirrorbench::scene::{self, CameraPath, FrameRecord, Ids, Lobe, Moment, Motion, Scene};
@@ -13,15 +13,19 @@ use truth_support::at;
 const SIZE: [u32; 2] = [128, 96];
 const FRAMES: u32 = 7;
 
-/// Every shipped path (an orbit, a dolly, reflections of reflections, a swing, an approach): where to
-/// begin, and the steps, in frames of the animation, at which its points move by up to 1/8 px and
-/// up to 4 px a frame in the median.
-const PATHS: [(&str, f32, [f32; 2]); 5] = [
+/// Every shipped path (orbits, a dolly, reflections of reflections, swings, an approach; `lecture` stands
+/// still): where to begin, and the steps, in frames of the animation, at which its points move by up
+/// to 1/8 px and up to 4 px a frame in the median.
+const PATHS: [(&str, f32, [f32; 2]); 9] = [
+    ("sky", 0.0, [0.164, 5.24]),
     ("columns", 0.0, [0.871, 29.4]),
     ("columns-dolly", 0.0, [2.18, 21.0]),
     ("two-spheres", 90.0, [0.0735, 1.89]),
     ("patow-room", 30.0, [1.04, 23.2]),
     ("kitchen", 140.0, [0.868, 8.1]),
+    ("teapot", 0.0, [0.474, 15.2]),
+    ("glass-sphere", 0.0, [0.65, 21.2]),
+    ("hall-of-mirrors", 0.0, [0.36, 11.5]),
 ];
 
 /// The scene at a time between frames, numbered.
@@ -38,79 +42,111 @@ fn follow(
     step: f32,
     draw: impl Fn(u32, &Tracer, &FrameRecord) -> FrameRecord,
 ) -> (Stability, Vec<PathFrame>) {
-    let mut measure = PathMeasure::new(1);
+    let draw = |frame, tracer: &Tracer, truth: &FrameRecord| vec![draw(frame, tracer, truth)];
+    follow_all(scene, start, step, 1, draw).remove(0)
+}
+
+/// The same of several cases.
+fn follow_all(
+    scene: &Scene,
+    start: f32,
+    step: f32,
+    cases: usize,
+    draw: impl Fn(u32, &Tracer, &FrameRecord) -> Vec<FrameRecord>,
+) -> Vec<(Stability, Vec<PathFrame>)> {
+    let mut measure = PathMeasure::new(cases);
     for frame in 0..FRAMES {
         let moment = moment(scene, frame, start + step * frame as f32);
         let tracer = Tracer::new(scene, &moment, TruthOptions::default());
         let truth = tracer.frame(SIZE);
-        let tested = draw(frame, &tracer, &truth);
-        measure.frame(&tracer, &truth, &[tested]).unwrap();
+        measure.frame(&tracer, &truth, &draw(frame, &tracer, &truth)).unwrap();
     }
-    measure.finish().remove(0)
+    measure.finish()
 }
 
 /// The truth of which every pixel shows what belongs `offset` pixels from its centre.
 fn shifted(tracer: &Tracer, truth: &FrameRecord, offset: Vec2) -> FrameRecord {
+    moved(tracer, truth, |_| offset)
+}
+
+/// The truth of which every pixel shows what belongs as far from its centre as `offset` says.
+fn moved(tracer: &Tracer, truth: &FrameRecord, offset: impl Fn(Vec2) -> Vec2) -> FrameRecord {
     let mut frame = truth.clone();
     for pixel in truth.reflector_pixels() {
         let centre = at(truth, pixel).as_vec2() + 0.5;
-        let ray = tracer.moment().camera.ray(truth.size, centre + offset);
+        let ray = tracer.moment().camera.ray(truth.size, centre + offset(centre));
         let hit = tracer.look(&ray).filter(|hit| hit.object == truth.reflector[pixel]);
         let Some(hit) = hit else {
             frame.record.ids[pixel] = Ids::MISSING;
             continue;
         };
-        let chain = tracer.chain(hit, ray.direction, Lobe::Reflected).unwrap();
+        let chain = |lobe| tracer.chain(hit, ray.direction, lobe).unwrap();
+        let arriving = |lobe| chain(lobe).radiance;
+        frame.colour[pixel] = tracer.composite(&hit, ray.direction, arriving);
+        let chain = chain(Lobe::Reflected);
         frame.record.ids[pixel] = chain.ids();
         frame.record.point[pixel] = chain.point();
         frame.record.radiance[pixel] = chain.radiance;
-        frame.colour[pixel] = tracer.composite(&hit, ray.direction, |_| chain.radiance);
     }
     frame
 }
 
-/// Pixels: what the search for roots leaves, of shifts that tremble by nothing.
-const STEADY_PX: f64 = 0.005;
-
-/// The same in the kitchen, whose pan and bowl of few triangles show most points several times
-/// within pixels of each other: of a few per cent the wrong one is found.
-const FOLDED_PX: f64 = 0.05;
+/// Pixels: what rounding and the search for roots leave of shifts that tremble by nothing.
+const STEADY_PX: f64 = 0.001;
 
 #[test]
 fn a_constant_shift_of_the_truth_is_steady_on_every_path() {
+    let offsets = [Vec2::new(0.37, -0.21), Vec2::new(-1.7, 2.3)];
     for (name, start, steps) in PATHS {
         let scene = scene::load(name).unwrap();
         for (speed, step) in [0.125, 4.0].into_iter().zip(steps) {
-            for offset in [Vec2::new(0.37, -0.21), Vec2::new(-1.7, 2.3)] {
-                let (stability, _) =
-                    follow(&scene, start, step, |_, tracer, truth| shifted(tracer, truth, offset));
+            let draw = |_, tracer: &Tracer, truth: &FrameRecord| {
+                offsets.map(|offset| shifted(tracer, truth, offset)).to_vec()
+            };
+            let cases = follow_all(&scene, start, step, offsets.len(), draw);
+            for ((stability, _), offset) in cases.into_iter().zip(offsets) {
                 let about = format!("{name} at {speed} px, shifted by {offset}: {stability:?}");
                 let jitter = stability.jitter_px.unwrap();
-                let steady_px = if name == "kitchen" { FOLDED_PX } else { STEADY_PX };
-                assert!(jitter.p95 < steady_px && jitter.median < 1e-4, "{about}");
+                assert!(jitter.p95 < STEADY_PX && jitter.median < 1e-4, "{about}");
                 assert_eq!(stability.pops, 0, "{about}");
                 assert!((0.85..1.15).contains(&(stability.speed_px / speed)), "{about}");
-                assert!(stability.covered > 0.2 && stability.points > 300.0, "{about}");
+                assert!(stability.covered > 0.3 && stability.points > 300.0, "{about}");
                 assert_eq!(stability.temporal_error.is_some(), speed < 1.0, "{about}");
                 // The same colours, wherever they are; edges may fall to the other side.
-                assert!(stability.temporal_error.is_none_or(|error| error < 0.06), "{about}");
+                assert!(stability.temporal_error.is_none_or(|error| error < 0.03), "{about}");
             }
         }
     }
 }
 
 #[test]
+fn a_steady_distortion_is_no_jitter() {
+    // Turned and enlarged about the middle; near the folds of the kitchen's pan and bowl the right
+    // one of two places is found only with the slope of the displacement.
+    let scene = scene::load("kitchen").unwrap();
+    let (stability, _) = follow(&scene, 140.0, 0.868, |_, tracer, truth| {
+        let turn = Mat2::from_cols(Vec2::new(0.05, 0.025), Vec2::new(-0.025, 0.05));
+        let middle = 0.5 * UVec2::from(SIZE).as_vec2();
+        moved(tracer, truth, |at| Vec2::new(-1.7, 2.3) + turn * (at - middle))
+    });
+    assert!(stability.jitter_px.unwrap().p95 < 3.0 * STEADY_PX, "{stability:?}");
+    assert_eq!(stability.pops, 0, "{stability:?}");
+}
+
+#[test]
 fn the_truth_itself_scores_exactly_nothing() {
-    for (name, start, [step, _]) in PATHS {
+    for (name, start, steps) in PATHS {
         let scene = scene::load(name).unwrap();
-        let (stability, frames) = follow(&scene, start, step, |_, _, truth| truth.clone());
-        let jitter = stability.jitter_px.unwrap();
-        assert_eq!([jitter.median, jitter.p95], [0.0; 2], "{name}");
-        assert_eq!(stability.pops, 0, "{name}");
-        assert!(frames.iter().all(|frame| frame.popping == 0.0), "{name}");
-        let errors = frames.iter().filter_map(|frame| frame.temporal_error);
-        assert_eq!(errors.fold(0.0, f64::max), 0.0, "{name}");
-        assert_eq!(stability.frames, [0, FRAMES - 1]);
+        for step in steps {
+            let (stability, frames) = follow(&scene, start, step, |_, _, truth| truth.clone());
+            let jitter = stability.jitter_px.unwrap();
+            assert_eq!([jitter.median, jitter.p95], [0.0; 2], "{name}");
+            assert_eq!(stability.pops, 0, "{name}");
+            assert!(frames.iter().all(|frame| frame.popping == 0.0), "{name}");
+            let errors = frames.iter().filter_map(|frame| frame.temporal_error);
+            assert_eq!(errors.fold(0.0, f64::max), 0.0, "{name}");
+            assert_eq!(stability.frames, [0, FRAMES - 1]);
+        }
     }
 }
 
@@ -119,21 +155,26 @@ const STEP: f32 = 7.0;
 
 #[test]
 fn a_vibration_scores_its_amplitude() {
-    let scene = scene::load("columns").unwrap();
-    for amplitude in [0.05f32, 0.4, 1.5] {
-        let towards = Vec2::new(0.8, -0.6);
-        let (stability, frames) = follow(&scene, 0.0, STEP, |frame, tracer, truth| {
-            let side = if frame % 2 == 0 { amplitude } else { -amplitude };
-            shifted(tracer, truth, Vec2::new(0.3, 0.2) + side * towards)
-        });
-        let jitter = stability.jitter_px.unwrap();
-        for measured in [jitter.median, jitter.p95] {
-            let ratio = measured / f64::from(amplitude);
-            assert!((ratio - 1.0).abs() < 0.05, "{measured} px instead of {amplitude}");
+    let towards = Vec2::new(0.8, -0.6);
+    let amplitudes = [0.05f32, 0.4, 1.5];
+    for (name, start, step) in [("columns", 0.0, STEP), ("kitchen", 140.0, 2.5)] {
+        let scene = scene::load(name).unwrap();
+        let draw = |frame: u32, tracer: &Tracer, truth: &FrameRecord| {
+            let side = if frame.is_multiple_of(2) { 1.0 } else { -1.0 };
+            let offset = |amplitude| Vec2::new(0.3, 0.2) + side * amplitude * towards;
+            amplitudes.map(|amplitude| shifted(tracer, truth, offset(amplitude))).to_vec()
+        };
+        let cases = follow_all(&scene, start, step, amplitudes.len(), draw);
+        for ((stability, frames), amplitude) in cases.into_iter().zip(amplitudes) {
+            let jitter = stability.jitter_px.unwrap();
+            for measured in [jitter.median, jitter.p95] {
+                let ratio = measured / f64::from(amplitude);
+                assert!((ratio - 1.0).abs() < 0.05, "{name}: {measured} px instead of {amplitude}");
+            }
+            // To and fro is twice the amplitude.
+            let pops = if amplitude > 0.5 { FRAMES - 1 } else { 0 };
+            assert_eq!(stability.pops, u64::from(pops), "{name}, {amplitude}: {frames:?}");
         }
-        // To and fro is twice the amplitude.
-        let pops = if amplitude > 0.5 { FRAMES - 1 } else { 0 };
-        assert_eq!(stability.pops, u64::from(pops), "{amplitude}: {frames:?}");
     }
 }
 

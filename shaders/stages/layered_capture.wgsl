@@ -46,7 +46,11 @@ struct Texel {
 }
 
 @fragment
-fn fragment(in: Surface, @builtin(primitive_index) triangle: u32) -> Texel {
+fn fragment(
+    in: Surface,
+    @builtin(primitive_index) triangle: u32,
+    @builtin(front_facing) turned: bool,
+) -> Texel {
     let depth = in.clip.z;
     // 1 / z is affine over a face for a plane, so these are exact for the triangle's own.
     let gradient = vec2(dpdx(depth), dpdy(depth)) / cube.near;
@@ -55,6 +59,12 @@ fn fragment(in: Surface, @builtin(primitive_index) triangle: u32) -> Texel {
     if bitcast<u32>(depth) + SAME_ULPS >= bitcast<u32>(before) {
         discard;
     }
+#ifdef FACING_ONLY
+    // A cube's faces are mirrored views, so what faces the centre runs clockwise.
+    if turned {
+        discard;
+    }
+#endif
     var out: Texel;
     let packed = pack2x16float(clamp(gradient, vec2(-LARGEST_HALF), vec2(LARGEST_HALF)));
     out.surface = vec4(bitcast<u32>(depth / cube.near), packed, 0u, 0u);

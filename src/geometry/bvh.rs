@@ -1,15 +1,25 @@
 //! The nearest triangle a ray meets, on the CPU: obvhs's tree, walked our own way.
 //!
-//! obvhs builds the binary tree. It is folded into nodes of eight boxes and leaves of up to four
-//! triangles that lie side by side, so that SSE2, which every x86-64 has, tests four at once.
+//! obvhs builds the binary tree. It is folded, at least cost, into nodes of eight boxes and leaves of
+//! up to eight triangles: one or two packs of four that lie side by side, so that SSE2, which every
+//! x86-64 has, tests four at once.
 //!
 //! Beside Embree 4.4 on one thread (`cargo bench --bench referees`, mirrored rays, 600,000 triangles
 //! and `kitchen`) the binary tree itself reached 0.37 and 0.32 of its speed, nodes of four boxes 0.60
-//! and 0.58, nodes of eight 0.65 and 0.72; built for the native CPU (Zen 4) 0.72 and 0.79. Tried
-//! without gain: Woop, Benthin & Wald's sheared triangle test (JCGT 2013), though it has half the
-//! operations: a ray meets ten nodes but two packs, and waits for memory and mispredicted branches
-//! rather than for arithmetic, so wider registers matter little too; huge pages; touching children
-//! ahead. obvhs's slower builds gain up to a tenth in `kitchen` for three times the build.
+//! and 0.58, nodes of eight 0.65 and 0.72, the tree as it is 0.81 and 0.88; built for the native CPU
+//! (Zen 4) 0.83 and 0.88.
+//!
+//! A ray meets nine nodes but two leaves, and waits for memory and mispredicted branches rather than
+//! for arithmetic: rays of the large mesh asked again while all they need is in the cache take half
+//! the time. So what helped made the tree smaller or shallower. On the large mesh, folding at least
+//! cost instead of opening the largest box first gained 6 % (nodes 59,000 to 37,000), keeping the
+//! stack of visits from ray to ray 4 %, packs never split 1 %, leaves of two packs 5 % (nodes 37,000
+//! to 22,000), pairing nodes as `binary` does 4 %, in `kitchen` 10 %. Tried for little or nothing:
+//! packs in whole cache lines (1 to 3 % slower, as they are larger); packs beside their nodes in one
+//! list (1 to 2 %, not worth its casts); leaves of four packs (2 % on the large mesh, but one node
+//! more a ray in `kitchen`); huge pages; touching children ahead; Woop, Benthin & Wald's sheared
+//! triangle test (JCGT 2013), though it has half the operations. Beside obvhs's preset its slower
+//! builds saved 4 to 6 % of the visits there, for three times the build and more.
 
 mod build;
 mod node;
@@ -21,11 +31,13 @@ use std::time::Duration;
 
 use glam::{Vec2, Vec3};
 use obvhs::BvhBuildParams;
+use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2_from_tris;
+use obvhs::ploc::PlocSearchDistance;
 use obvhs::triangle::Triangle;
 
 use super::Ray;
-use node::{Child, Node, Visit};
+use node::{Below, Child, Node, Visit};
 use pack::{LANES, Pack};
 use splat::SplatRay;
 
@@ -61,18 +73,7 @@ impl Bvh {
         if triangles.is_empty() {
             return Bvh { nodes: Vec::new(), packs: Vec::new() };
         }
-        let list: Vec<Triangle> = triangles
-            .iter()
-            .map(|&[v0, v1, v2]| Triangle { v0: v0.into(), v1: v1.into(), v2: v2.into() })
-            .collect();
-        let params = BvhBuildParams {
-            max_prims_per_leaf: LANES as u32,
-            // A pack costs as much as a node.
-            collapse_traversal_cost: 1.0,
-            ..BvhBuildParams::medium_build()
-        };
-        let mut build_time = Duration::ZERO;
-        build::fold(&build_bvh2_from_tris(&list, params, &mut build_time), triangles)
+        build::fold(&binary(triangles), triangles)
     }
 
     /// The nearest triangle met at `t` from `t_min` (0 or more) to before `t_max` for which
@@ -108,19 +109,21 @@ impl Bvh {
         let mut nearest = None;
         let mut child = Child::node(0);
         loop {
-            match child.index() {
-                Err(node) => {
+            match child.below() {
+                Below::Node(node) => {
                     let met = self.nodes[node].meet(&ray, t_min, t_max);
                     if let Some(visit) = push_all_but_nearest(met, waiting) {
                         child = visit.child();
                         continue;
                     }
                 }
-                Ok(pack) => {
-                    for hit in self.packs[pack].meet(&ray, t_min, t_max) {
-                        if hit.t < t_max && accept(hit.triangle, hit.front) {
-                            t_max = hit.t;
-                            nearest = Some(hit);
+                Below::Packs(packs) => {
+                    for pack in &self.packs[packs] {
+                        for hit in pack.meet(&ray, t_min, t_max) {
+                            if hit.t < t_max && accept(hit.triangle, hit.front) {
+                                t_max = hit.t;
+                                nearest = Some(hit);
+                            }
                         }
                     }
                 }
@@ -134,6 +137,26 @@ impl Bvh {
             }
         }
     }
+}
+
+/// obvhs's tree, with at most [`LANES`] triangles in a leaf.
+fn binary(triangles: &[[Vec3; 3]]) -> Bvh2 {
+    let list: Vec<Triangle> = triangles
+        .iter()
+        .map(|&[v0, v1, v2]| Triangle { v0: v0.into(), v1: v1.into(), v2: v2.into() })
+        .collect();
+    let params = BvhBuildParams {
+        max_prims_per_leaf: LANES as u32,
+        // A pack costs as much as a node.
+        collapse_traversal_cost: 1.0,
+        // To pair a node the 6 on either side are tried from the first round on. The preset tries 14
+        // from the fourth on: as long to build, and in `kitchen` a ray meets one leaf more.
+        ploc_search_distance: PlocSearchDistance::Low,
+        search_depth_threshold: 0,
+        ..BvhBuildParams::medium_build()
+    };
+    let mut build_time = Duration::ZERO;
+    build_bvh2_from_tris(&list, params, &mut build_time)
 }
 
 /// Returns the nearest of the children met; the others go on the stack, the nearer on top.
@@ -232,6 +255,17 @@ mod tests {
             assert!(hit.barycentrics.abs_diff_eq(Vec2::new(0.2, 0.3), 1e-6));
             assert!((hit.t - 2.0).abs() < 1e-6);
         }
+    }
+
+    #[test]
+    fn a_ray_may_be_traced_while_another_is() {
+        let bvh = Bvh::new(&field(8));
+        let all = [0.0, f32::INFINITY];
+        let slanted = ray(Vec3::new(0.1, 0.3, 0.1), Vec3::new(1.0, -0.6, 1.0));
+        let alone = bvh.nearest(&slanted, all, |_, _| true);
+        assert!(alone.is_some());
+        let within = |_, _| bvh.nearest(&slanted, all, |_, _| true) == alone;
+        assert_eq!(bvh.nearest(&slanted, all, within), alone);
     }
 
     #[test]

@@ -10,7 +10,9 @@ pub mod mesh;
 pub mod optics;
 pub mod polynomial;
 pub mod random;
+pub mod reflection_plane;
 pub mod shapes;
+pub mod texel_line;
 pub mod tree;
 pub mod wide_tree;
 

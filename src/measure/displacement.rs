@@ -10,10 +10,11 @@ use std::collections::BinaryHeap;
 
 use glam::{UVec2, Vec2, Vec3};
 
-use super::field::{Field, Key, Segment, Target, Trees};
+use super::field::{Field, Segment, Target, Trees};
+use super::mirrors::Mirrors;
 use super::root::{CONFIRMED_PX, Guess, at_rim, centre, on_triangle, polish, traced_guess};
 use super::tree::{Place, Tree};
-use crate::truth::{Bounce, Chain, Tracer};
+use crate::truth::{Bounce, Tracer};
 
 /// Beyond this a point counts as unreachable: drawn where it belongs nowhere near.
 pub(super) const REACH_PX: f32 = 256.0;
@@ -27,6 +28,11 @@ const CLOSE_DIAGONALS: f32 = 4.0;
 /// Up to this far away, the surroundings of pixels at the rim of a chain are traced if need be.
 const TRACED_RIM_PX: f32 = 4.0;
 
+/// A target seen within this of a segment's direction is on it: single precision gives no better.
+/// Where parallel rays meet a flat mirror every pixel shows the same point of the sky, and a search
+/// for the one it belongs to would find none.
+const ROUNDING_DEG: f32 = 1e-4;
+
 /// The slope of a guess is taken from rays that far beside it.
 const SLOPE_STEP_PX: f32 = 0.25;
 
@@ -37,15 +43,13 @@ const OWN_STEPS_PX: [f32; 3] = [0.05, 0.01, 0.002];
 pub(super) struct Query<'a> {
     pub tracer: &'a Tracer<'a>,
     pub size: [u32; 2],
-    /// Of the order of `chain`.
+    /// Of the order of `mirrors`.
     pub field: &'a Field,
     /// The position the root is to be near, pixels, within the image.
     pub near: Vec2,
     /// How far from there it may be.
     pub reach_px: f32,
-    /// The truth's chain there, and its key.
-    pub chain: &'a Chain,
-    pub key: Key,
+    pub mirrors: Mirrors<'a>,
     pub target: Target,
 }
 
@@ -62,7 +66,7 @@ pub(super) enum Kind {
 impl Query<'_> {
     /// The nearest root; `None` when none is within reach. `queue` is scratch space.
     pub fn root(&self, queue: &mut Queue) -> Option<Vec2> {
-        let trees = self.field.trees(self.key)?;
+        let trees = self.field.trees(self.mirrors.key)?;
         let mut best = self.nothing_yet();
         queue.clear();
         for kind in [Kind::Cells, Kind::Rims] {
@@ -91,8 +95,12 @@ impl Query<'_> {
     }
 
     /// The root next to the position asked of, if there is one: the search may miss it, as a chain
-    /// seen through several mirrors or past an edge may be a hundredth of a pixel wide.
+    /// seen through several mirrors or past an edge may be a hundredth of a pixel wide, and of two
+    /// roots on either side of a fold it may find the other.
     pub fn root_beside(&self) -> Option<Vec2> {
+        if self.trace(self.near)?.angle_deg(self.target) <= ROUNDING_DEG {
+            return Some(self.near);
+        }
         let step = |width_px: f32| {
             traced_guess(self.target, self.near, width_px, |position| self.trace(position))?.step()
         };
@@ -145,7 +153,7 @@ impl Query<'_> {
     /// Roots around the rim pixels where their neighbours do not help, as far as the pixels are
     /// near enough for a root there to matter.
     fn trace_rims(&self, best: &mut Best) {
-        for rim in self.field.rims_around(self.near.as_uvec2(), self.key, TRACED_RIM_PX) {
+        for rim in self.field.rims_around(self.near.as_uvec2(), self.mirrors.key, TRACED_RIM_PX) {
             let missed = || {
                 let corners = self.field.with_neighbours(rim);
                 corners.and_then(|corners| at_rim(self.target, corners)).is_none()
@@ -178,22 +186,23 @@ impl Query<'_> {
         point.distance(a) < CLOSE_DIAGONALS * diagonal
     }
 
-    /// The last segment of the path through a position, as long as it meets the chain's mirrors.
+    /// The last segment of the path through a position, as long as it meets the mirrors.
     /// What lies behind the last of them does not matter.
     fn trace(&self, position: Vec2) -> Option<Segment> {
         let ray = self.tracer.moment().camera.ray(self.size, position);
         let mut hit = self.tracer.look(&ray)?;
         let mut incident = ray.direction;
         let mut last = Segment::default();
-        for (index, bounce) in self.chain.bounces.iter().enumerate() {
+        for (index, bounce) in self.mirrors.bounces.iter().enumerate() {
             if hit.object != bounce.hit.object {
                 return None;
             }
             let lobe = bounce.lobe;
             let outgoing = self.tracer.depart(&hit, incident, lobe)?.direction;
-            last = Segment { origin: hit.point, direction: outgoing };
-            if index + 1 < self.chain.bounces.len() {
-                hit = self.tracer.leave(&Bounce { hit, lobe, outgoing })?;
+            let left = Bounce { hit, lobe, outgoing };
+            last = Segment::after(&left);
+            if index + 1 < self.mirrors.bounces.len() {
+                hit = self.tracer.leave(&left)?;
                 incident = outgoing;
             }
         }
@@ -238,15 +247,14 @@ impl Kind {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::field::key;
     use crate::measure::judge::chains;
     use crate::scene::{self, Lobe, Status};
-    use crate::truth::TruthOptions;
+    use crate::truth::{Chain, TruthOptions};
 
     impl Query<'_> {
         /// The same by looking at every cell and rim pixel, in no order.
         fn exhaustive(&self) -> Option<f32> {
-            let trees = self.field.trees(self.key)?;
+            let trees = self.field.trees(self.mirrors.key)?;
             let cells = trees.cells.pixels().iter();
             let cells = cells.filter_map(|&cell| self.alone(|best| self.visit_cell(cell, best)));
             let rims = trees.rims.pixels().iter();
@@ -257,7 +265,7 @@ mod tests {
 
         /// The same by following the miss from every pixel of the chain, whatever it is there.
         fn tried_everywhere(&self) -> Option<f32> {
-            let Trees { cells, rims } = self.field.trees(self.key)?;
+            let Trees { cells, rims } = self.field.trees(self.mirrors.key)?;
             let pixels = cells.pixels().iter().chain(rims.pixels());
             let from = |&pixel: &UVec2| {
                 self.alone(|best| self.polish(self.traced_guess(centre(pixel)), best))
@@ -296,8 +304,7 @@ mod tests {
                 field: &fields[chain.order() as usize - 1],
                 near: centre(UVec2::new(pixel as u32 % size[0], pixel as u32 / size[0])),
                 reach_px: REACH_PX,
-                chain,
-                key: key(chain, chain.order()),
+                mirrors: Mirrors::of(chain),
                 target: Target::new(point),
             });
         }

@@ -6,9 +6,11 @@
 //! the same mirrors, is its displacement. Of a picture shifted as a whole that is the shift, wherever
 //! the point falls between pixel centres.
 //!
-//! Where a mirror shows a point several times, q(p) is the place displaced most like the surroundings
-//! of p: by the nearest place, as in `displacement_px`, a steady picture would seem to jump wherever
-//! another place becomes the nearest.
+//! Mirrors are those that the record names: where another mirror ends, a picture a little off
+//! shows at p what belongs in mirrors that the truth does not show at p. Where they show a point several
+//! times, q(p) is the place displaced most like the surroundings of p ([`super::usual`]): by the nearest
+//! place, as in `displacement_px`, a steady picture would seem to jump wherever another place
+//! becomes the nearest.
 
 use std::collections::HashMap;
 
@@ -17,11 +19,13 @@ use rayon::prelude::*;
 
 use super::accuracy::finite;
 use super::colour::displayed;
-use super::displacement::{Queue, REACH_PX};
-use super::field::{Key, Target, key};
+use super::displacement::Queue;
+use super::field::Target;
 use super::judge::{Answer, Court, DEPTH_TOLERANCE, at};
+use super::mirrors::Mirrors;
 use super::root::centre;
 use super::track::Track;
+use super::usual::Usual;
 use crate::scene::{FrameRecord, NO_OBJECT, Status};
 
 /// Neighbouring pixels whose points belong farther apart than this do not hang together: the picture
@@ -29,13 +33,12 @@ use crate::scene::{FrameRecord, NO_OBJECT, Status};
 const TORN_PX: f32 = 8.0;
 
 /// A displacement this far from what is usual around it is doubted, pixels.
-const STRAY_PX: f32 = 0.1;
+const STRAY_PX: f32 = 0.05;
 
-/// What is usual is the median over three by three blocks of so many pixels a side.
-const BLOCK: u32 = 4;
-
-/// How often what is usual is found anew.
-const SETTLING_ROUNDS: usize = 3;
+/// What is usual is found anew so often; each time, up to so many pixels a pixel of slope are
+/// believed. None at first: where the other of a fold's two places was found for most points, the
+/// picture seems mirrored in the fold, and a slope would follow that.
+const SLOPES: [f32; 4] = [0.0, 0.0, 0.5, 0.5];
 
 /// How far outside a triangle, in weights, a point still counts as in it: rounding must not open
 /// cracks between triangles.
@@ -46,18 +49,19 @@ const SPREAD: f32 = 2.0;
 
 /// What a pixel draws.
 #[derive(Clone, Copy, Debug)]
-struct Spot {
+struct Spot<'a> {
     answer: Answer,
-    key: Key,
+    /// Those that the record says show it.
+    mirrors: Mirrors<'a>,
     /// q: where it belongs, pixels.
     belongs: Vec2,
     /// p - q.
     displacement: Vec2,
 }
 
-impl Spot {
+impl Spot<'_> {
     fn hangs_together(&self, other: &Spot) -> bool {
-        let side = |spot: &Spot| (spot.answer.status, spot.answer.ids.object, spot.key);
+        let side = |spot: &Spot| (spot.answer.status, spot.answer.ids.object, spot.mirrors.key);
         side(self) == side(other) && self.belongs.distance(other.belongs) <= TORN_PX
     }
 }
@@ -68,7 +72,7 @@ pub(super) struct Drawn<'a> {
     court: &'a Court<'a>,
     size: UVec2,
     /// By pixel; `None` where nothing is compared or what is shown belongs nowhere.
-    spots: Vec<Option<Spot>>,
+    spots: Vec<Option<Spot<'a>>>,
     /// By pixel of the truth, the triangles that reach it: those of pixel i are
     /// `reaching[first[i]..first[i + 1]]`.
     first: Vec<u32>,
@@ -78,54 +82,40 @@ pub(super) struct Drawn<'a> {
 impl<'a> Drawn<'a> {
     pub fn new(tested: &'a FrameRecord, court: &'a Court<'a>) -> Self {
         let size = UVec2::from(tested.size);
+        let known = known(court);
         let spots: Vec<Option<Spot>> = (0..tested.reflector.len())
             .into_par_iter()
-            .map_init(Queue::new, |queue, pixel| spot(tested, court, pixel, queue))
+            .map_init(Queue::new, |queue, pixel| spot(tested, court, &known, pixel, queue))
             .collect();
         let (first, reaching) = Default::default();
         let mut drawn = Drawn { tested, court, size, spots, first, reaching };
-        for _ in 0..SETTLING_ROUNDS {
-            drawn.settle();
+        for steepest in SLOPES {
+            drawn.settle(steepest);
         }
         drawn.sort_triangles();
         drawn
     }
 
     /// Looks for the places of stray points again, where their surroundings make them expected.
-    fn settle(&mut self) {
-        let usual = self.usual_displacements();
+    fn settle(&mut self, steepest: f32) {
+        let known = |spot: &Spot| (spot.mirrors.key, spot.displacement);
+        let known: Vec<_> = self.spots.iter().map(|spot| spot.as_ref().map(known)).collect();
+        let usual = Usual::new(self.size, &known, steepest);
         let (court, tested) = (self.court, self.tested);
         self.spots.par_iter_mut().enumerate().for_each_init(Queue::new, |queue, (pixel, spot)| {
-            let (Some(spot), Some(chain)) = (spot, &court.chains[pixel]) else { return };
+            let Some(spot) = spot else { return };
             let pixel = at(tested.size, pixel);
-            let usual = usual.get(&(spot.key, pixel / BLOCK)).copied();
+            let usual = usual.at(spot.mirrors.key, pixel);
             let Some(usual) = usual.filter(|usual| usual.distance(spot.displacement) > STRAY_PX)
             else {
                 return;
             };
             let target = Target::new(spot.answer.point);
-            let query = court.query(chain, target, centre(pixel) - usual, REACH_PX);
-            if let Some(root) = query.and_then(|query| query.root(queue)) {
+            let expected = centre(pixel) - usual;
+            if let Some(root) = court.belongs(spot.mirrors, target, expected, queue) {
                 (spot.belongs, spot.displacement) = (root, centre(pixel) - root);
             }
         });
-    }
-
-    /// The median displacement around every block of pixels, by the mirrors met.
-    fn usual_displacements(&self) -> HashMap<(Key, UVec2), Vec2> {
-        let mut blocks: HashMap<(Key, UVec2), Vec<Vec2>> = HashMap::new();
-        for (pixel, spot) in self.spots.iter().enumerate() {
-            if let Some(Spot { key, displacement, .. }) = spot {
-                let block = at(self.tested.size, pixel) / BLOCK;
-                blocks.entry((*key, block)).or_default().push(*displacement);
-            }
-        }
-        let around = |(key, block): (Key, UVec2)| {
-            let beside = |i: u32| (block + UVec2::new(i % 3, i / 3)).checked_sub(UVec2::ONE);
-            let near = (0..9).filter_map(beside).filter_map(|block| blocks.get(&(key, block)));
-            near.flatten().copied().collect::<Vec<Vec2>>()
-        };
-        blocks.par_iter().map(|(&place, _)| (place, median(around(place)))).collect()
     }
 
     /// p - q of a track's point, pixels: of the places where it is drawn the one nearest to
@@ -160,7 +150,7 @@ impl<'a> Drawn<'a> {
         let reflector = track.chain.bounces[0].hit.object;
         let is_truths = |pixel: usize| {
             let chain = self.court.chains[pixel].as_ref();
-            chain.is_some_and(|chain| key(chain, chain.order()) == track.key())
+            chain.is_some_and(|chain| Mirrors::of(chain).key == track.key())
                 && truth.reflector[pixel] == reflector
                 && truth.record.ids[pixel].object == track.object()
         };
@@ -184,7 +174,7 @@ impl<'a> Drawn<'a> {
     /// The displacement of a track's point if it is drawn on a triangle.
     fn on(&self, triangle: [u32; 3], track: &Track) -> Option<Vec2> {
         let [a, b, c] = self.corners(triangle)?;
-        if a.key != track.key() || a.answer.ids.object != track.object() {
+        if a.mirrors.key != track.key() || a.answer.ids.object != track.object() {
             return None;
         }
         let edges = Mat2::from_cols(b.belongs - a.belongs, c.belongs - a.belongs);
@@ -198,7 +188,7 @@ impl<'a> Drawn<'a> {
         (inside && shows([a, b, c], [u, v, w], track)).then_some(displacement)
     }
 
-    fn corners(&self, triangle: [u32; 3]) -> Option<[&Spot; 3]> {
+    fn corners(&self, triangle: [u32; 3]) -> Option<[&Spot<'a>; 3]> {
         let [a, b, c] = triangle.map(|pixel| self.spots[pixel as usize].as_ref());
         Some([a?, b?, c?])
     }
@@ -242,9 +232,26 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// What a pixel draws and where it belongs; `None` where truth and frame see different reflectors
-/// or the answer is missing.
-fn spot(tested: &FrameRecord, court: &Court, pixel: usize, queue: &mut Queue) -> Option<Spot> {
+/// The first mirrors of the truth's chains by what a record says of them, order and trace.
+type Known<'a> = HashMap<(u32, u32), Mirrors<'a>>;
+
+fn known<'a>(court: &'a Court) -> Known<'a> {
+    let mut known = HashMap::new();
+    for mirrors in court.chains.iter().flatten().flat_map(Mirrors::beginnings) {
+        known.entry(mirrors.recorded()).or_insert(mirrors);
+    }
+    known
+}
+
+/// What a pixel draws and where it belongs; `None` where truth and frame see different reflectors,
+/// the answer is missing or the truth shows nothing by the mirrors it is of.
+fn spot<'a>(
+    tested: &FrameRecord,
+    court: &'a Court,
+    known: &Known<'a>,
+    pixel: usize,
+    queue: &mut Queue,
+) -> Option<Spot<'a>> {
     let truth = court.truth;
     let reflector = tested.reflector[pixel];
     if reflector == NO_OBJECT || reflector != truth.reflector[pixel] {
@@ -253,23 +260,17 @@ fn spot(tested: &FrameRecord, court: &Court, pixel: usize, queue: &mut Queue) ->
     let chain = court.chains[pixel].as_ref()?;
     let [expected, answer] = [truth, tested].map(|frame| Answer::of(Some(&frame.record), pixel));
     let here = centre(at(tested.size, pixel));
-    let belongs = match answer.status {
+    let recorded = (answer.ids.order(), answer.ids.trace);
+    let (mirrors, belongs) = match answer.status {
         Status::Missing => return None,
-        _ if answer.equals(&expected) => here,
-        _ => court.belongs(pixel, chain, Target::new(answer.point), queue)?,
+        _ if answer.equals(&expected) => (Mirrors::of(chain), here),
+        _ => {
+            let own = Mirrors::beginnings(chain).find(|own| own.recorded() == recorded);
+            let mirrors = own.or_else(|| known.get(&recorded).copied())?;
+            (mirrors, court.belongs(mirrors, Target::new(answer.point), here, queue)?)
+        }
     };
-    let key = key(chain, chain.order());
-    Some(Spot { answer, key, belongs, displacement: here - belongs })
-}
-
-/// By component; of an even number the higher of the middle two. There is at least one.
-fn median(mut values: Vec<Vec2>) -> Vec2 {
-    let middle = values.len() / 2;
-    let mut of = |component: fn(&Vec2) -> f32| {
-        let by = |a: &Vec2, b: &Vec2| component(a).total_cmp(&component(b));
-        component(values.select_nth_unstable_by(middle, by).1)
-    };
-    Vec2::new(of(|value| value.x), of(|value| value.y))
+    Some(Spot { answer, mirrors, belongs, displacement: here - belongs })
 }
 
 /// Whether what a triangle shows is the track's point, and not another on the same mirrored ray.

@@ -10,9 +10,10 @@ use std::collections::HashMap;
 use glam::{UVec2, Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
+use super::mirrors::{Key, Mirrors};
 use super::root::{MARGIN, RIM_PX, centre};
 use super::tree::{Bundle, Leaf, Tree, angle};
-use crate::truth::Chain;
+use crate::truth::{Bounce, Chain};
 
 /// Where a record says the light came from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,22 +48,22 @@ pub(super) struct Segment {
     pub direction: Vec3,
 }
 
-/// Chains of the same reflectors that mirror and refract alike have the same key.
-pub(super) type Key = u64;
+impl Segment {
+    /// What leaves a mirror.
+    pub fn after(bounce: &Bounce) -> Self {
+        Segment { origin: bounce.hit.point, direction: bounce.outgoing }
+    }
+
+    /// Angle between the segment and the direction to a target from where it begins; by the chord,
+    /// which keeps small angles.
+    pub fn angle_deg(&self, target: Target) -> f32 {
+        let chord = target.seen_from(self.origin).distance(self.direction);
+        2.0 * (0.5 * chord).min(1.0).asin().to_degrees()
+    }
+}
 
 /// No chain here. No trace and refractions look like this: a chain has at most 16 bounces.
 const NONE: Key = u64::MAX;
-
-/// The reflectors and the refractions of the first `order` bounces of a chain, `order` at least 1.
-pub(super) fn key(chain: &Chain, order: u32) -> Key {
-    packed(chain.trace, chain.refractions(), order)
-}
-
-fn packed(trace: u32, refractions: u32, order: u32) -> Key {
-    let trace = trace & (u32::MAX >> 32u32.saturating_sub(8 * order));
-    let refractions = refractions & ((1 << order.min(31)) - 1);
-    Key::from(trace) | Key::from(refractions) << 32
-}
 
 /// A position of the image and the segment there.
 pub(super) type Corner = (Vec2, Segment);
@@ -314,8 +315,7 @@ fn cell_pixels(UVec2 { x, y }: UVec2) -> [UVec2; 4] {
 
 fn last_of(chain: &Chain, order: u32) -> Option<(Key, Segment)> {
     let bounce = chain.bounces.get(order as usize - 1)?;
-    let segment = Segment { origin: bounce.hit.point, direction: bounce.outgoing };
-    Some((key(chain, order), segment))
+    Some((Mirrors::first(chain, order).key, Segment::after(bounce)))
 }
 
 #[cfg(test)]
@@ -402,13 +402,5 @@ mod tests {
         let near: Vec<UVec2> = field.rims_around(UVec2::new(15, 7), 1, 2.0).collect();
         assert!(near.contains(&UVec2::new(15, 7)) && near.contains(&UVec2::new(13, 7)));
         assert!(near.iter().all(|pixel| pixel.y <= 7 && field.is_rim(*pixel)));
-    }
-
-    #[test]
-    fn a_key_holds_as_many_reflectors_as_asked_for() {
-        assert_eq!(packed(0x0403_0201, 0b10, 1), 0x01);
-        assert_eq!(packed(0x0403_0201, 0b10, 3), 0x2_0003_0201);
-        assert_eq!(packed(0x0403_0201, 0, 4), 0x0403_0201);
-        assert_eq!(packed(0x0403_0201, 0b10_0001, 6), 0x21_0403_0201);
     }
 }

@@ -5,16 +5,12 @@ use rayon::prelude::*;
 
 use super::accuracy::Class;
 use super::displacement::{Query, Queue, REACH_PX};
-use super::field::{Field, Target, key};
+use super::field::{Field, Segment, Target};
+use super::mirrors::Mirrors;
 use super::root::centre;
 use crate::geometry::Ray;
 use crate::scene::{FrameRecord, Ids, Lobe, ReflectionRecord, Status, shading};
 use crate::truth::{Chain, Tracer};
-
-/// An answer seen within this of the mirrored direction is the pixel's own: single precision gives
-/// no better. Where parallel rays meet a flat mirror every pixel shows the same point of the sky, and
-/// a search for the one it belongs to would find none.
-const ROUNDING_DEG: f32 = 1e-4;
 
 /// Relative difference of distances over which a depth is wrong.
 pub(super) const DEPTH_TOLERANCE: f32 = 0.05;
@@ -186,45 +182,42 @@ impl<'a> Court<'a> {
         let missing = answer.status == Status::Missing || found(&expected) && !found(&answer);
         let spurious = !found(&expected) && found(&answer);
         let target = Target::new(answer.point);
-        let angle_deg = angle_deg(chain, target);
-        let belongs =
-            if missing || spurious { None } else { self.belongs(pixel, chain, target, queue) };
-        let displacement_px =
-            belongs.map(|there| there.distance(centre(at(self.truth.size, pixel))));
+        let here = centre(at(self.truth.size, pixel));
+        let belongs = if missing || spurious {
+            None
+        } else {
+            self.belongs(Mirrors::of(chain), target, here, queue)
+        };
         Some(Judged {
             missing,
             spurious,
             wrong_object: both_found && expected.ids.object != answer.ids.object,
             wrong_depth: both_found && wrong_depth(chain, expected.point.xyz(), answer.point.xyz()),
-            unreachable: !missing && !spurious && displacement_px.is_none(),
-            displacement_px,
-            angle_deg,
+            unreachable: !missing && !spurious && belongs.is_none(),
+            displacement_px: belongs.map(|there| there.distance(here)),
+            angle_deg: Segment::after(chain.last()).angle_deg(target),
             shaded,
         })
     }
 
-    /// Where in the image the target belongs that a pixel shows: the pixel's own centre, or else
-    /// the nearest position on its chain.
+    /// The position of the image from which mirrors show the target: `near` itself or right beside
+    /// it, or else the nearest.
     pub fn belongs(
         &self,
-        pixel: usize,
-        chain: &Chain,
+        mirrors: Mirrors,
         target: Target,
+        near: Vec2,
         queue: &mut Queue,
     ) -> Option<Vec2> {
-        let near = centre(at(self.truth.size, pixel));
-        if angle_deg(chain, target) <= ROUNDING_DEG {
-            return Some(near);
-        }
-        let query = self.query(chain, target, near, REACH_PX)?;
+        let query = self.query(mirrors, target, near, REACH_PX)?;
         query.root_beside().or_else(|| query.root(queue))
     }
 
-    /// To ask for the position nearest to `near` from which a chain's mirrors show the target;
-    /// `None` where no chain of the frame is that long.
+    /// To ask for the position nearest to `near` from which mirrors show the target; `None` where no
+    /// chain of the frame is that long.
     pub fn query<'c>(
         &'c self,
-        chain: &'c Chain,
+        mirrors: Mirrors<'c>,
         target: Target,
         near: Vec2,
         reach_px: f32,
@@ -232,11 +225,10 @@ impl<'a> Court<'a> {
         Some(Query {
             tracer: self.tracer,
             size: self.truth.size,
-            field: self.fields.get(chain.order() as usize - 1)?,
+            field: self.fields.get(mirrors.order() as usize - 1)?,
             near,
             reach_px,
-            chain,
-            key: key(chain, chain.order()),
+            mirrors,
             target,
         })
     }
@@ -309,11 +301,4 @@ fn wrong_depth(chain: &Chain, expected: Vec3, answer: Vec3) -> bool {
     let last = chain.last().hit.point;
     let (right, given) = (last.distance(expected), last.distance(answer));
     (given - right).abs() > DEPTH_TOLERANCE * right
-}
-
-/// Angle at the last mirror; by the chord, which keeps small angles.
-fn angle_deg(chain: &Chain, target: Target) -> f32 {
-    let towards = target.seen_from(chain.last().hit.point);
-    let chord = towards.distance(chain.last().outgoing);
-    2.0 * (0.5 * chord).min(1.0).asin().to_degrees()
 }

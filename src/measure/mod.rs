@@ -7,6 +7,7 @@ mod displacement;
 mod drawn;
 mod field;
 mod judge;
+mod mirrors;
 pub mod ratio;
 mod root;
 pub mod stability;
@@ -14,6 +15,7 @@ pub mod statistics;
 mod track;
 mod trail;
 mod tree;
+mod usual;
 
 pub use accuracy::{Accuracy, BadShare, Class, Flip, Maps, Quantiles, accuracy};
 pub use stability::{Jitter, PathFrame, PathMeasure, Stability};

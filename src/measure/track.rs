@@ -10,8 +10,9 @@ use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
 use super::displacement::Queue;
-use super::field::{Key, Target, key};
+use super::field::Target;
 use super::judge::{Court, DEPTH_TOLERANCE, at};
+use super::mirrors::{Key, Mirrors};
 use super::root::centre;
 use crate::scene::{Lobe, Moment, NO_OBJECT, ObjectId};
 use crate::truth::Chain;
@@ -92,7 +93,7 @@ impl Track {
     }
 
     pub fn key(&self) -> Key {
-        key(&self.chain, self.chain.order())
+        Mirrors::of(&self.chain).key
     }
 
     /// The track one frame on.
@@ -104,7 +105,8 @@ impl Track {
         let expected = self.before.map_or(self.at, |before| 2.0 * self.at - before);
         let expected = expected.clamp(Vec2::splat(0.5), last);
         let point = self.spot.at(court.tracer.moment());
-        let query = court.query(&self.chain, Target::new(point), expected, LONGEST_STEP_PX)?;
+        let query =
+            court.query(Mirrors::of(&self.chain), Target::new(point), expected, LONGEST_STEP_PX)?;
         let root = query.root(queue).filter(|&root| inside(root))?;
         let chain = self.seen_at(root, point, court)?;
         Some(Track { spot: self.spot, chain, at: root, before: Some(self.at), point })
@@ -115,7 +117,7 @@ impl Track {
         let tracer = court.tracer;
         let ray = tracer.moment().camera.ray(court.truth.size, position);
         let chain = tracer.chain(tracer.look(&ray)?, ray.direction, Lobe::Reflected)?;
-        let alike = key(&chain, chain.order()) == self.key()
+        let alike = Mirrors::of(&chain).key == self.key()
             && chain.bounces[0].hit.object == self.chain.bounces[0].hit.object;
         let shows = match &chain.shown {
             None => self.object() == NO_OBJECT,

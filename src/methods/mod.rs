@@ -13,6 +13,7 @@ mod planar_mirror;
 mod ray_traced;
 mod screen_space;
 mod truth;
+mod z_buffered_map;
 
 use std::sync::Arc;
 
@@ -148,6 +149,7 @@ pub static METHODS: &[MethodInfo] = &[
     ray_traced::INFO,
     environment_map::INFO,
     planar_mirror::INFO,
+    z_buffered_map::INFO,
     distance_impostor::INFO,
     screen_space::INFO,
 ];

@@ -20,6 +20,15 @@ use crate::gpu::{
 };
 use crate::scene::ObjectId;
 
+/// Which sides of surfaces are captured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sides {
+    /// Both, so that a closed thing fills two layers.
+    Both,
+    /// Those alone whose front is towards the centre: what a renderer that culls back faces keeps.
+    Facing,
+}
+
 /// Surface, radiance, ids, and the depth the next layer is peeled from.
 const FORMATS: [Format; 4] =
     [Format::Rg32Uint, Format::Rgba16Float, Format::Rg32Uint, Format::R32Float];
@@ -111,7 +120,11 @@ pub struct LayeredCaptureStage {
 }
 
 impl LayeredCaptureStage {
-    pub fn new(device: &Arc<Device>, mode: RecordMode) -> Result<LayeredCaptureStage> {
+    pub fn new(
+        device: &Arc<Device>,
+        mode: RecordMode,
+        sides: Sides,
+    ) -> Result<LayeredCaptureStage> {
         let (colours, stored) = match mode {
             RecordMode::Radiance => (&FORMATS_WITHOUT_IDS[..], 2),
             RecordMode::Full => (&FORMATS[..], 3),
@@ -124,7 +137,11 @@ impl LayeredCaptureStage {
         };
         let surfaces =
             Attachments { colours, depth_stencil: true, depth: Depth::Nearest, ..background };
-        let pipeline = |file, a| GraphicsPipeline::new(device, file, &mode.defines(), a);
+        let mut defines = mode.defines();
+        if sides == Sides::Facing {
+            defines.push(("FACING_ONLY", 1));
+        }
+        let pipeline = |file, a| GraphicsPipeline::new(device, file, &defines, a);
         Ok(LayeredCaptureStage {
             background: pipeline("stages/layered_background.wgsl", &background)?,
             surfaces: pipeline("stages/layered_capture.wgsl", &surfaces)?,
@@ -198,6 +215,13 @@ mod tests {
             clip_from_world,
             centre,
             near
+        );
+        assert_layout!(
+            "z_buffered_map/published.wgsl",
+            "LayeredMap",
+            LayeredMapUniform,
+            centre,
+            size
         );
     }
 }

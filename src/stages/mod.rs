@@ -1,6 +1,6 @@
 //! What every method shares on the GPU: the scene, the direct view, the reflectors' footprint, the
-//! captured map with one layer or several, the tree for rays, the record, the fallback and the composite. Each is written here once, so two
-//! methods differ only in what they find.
+//! captured map with one layer or several, the tree for rays, the record, the fallback and the
+//! composite. Each is written here once, so two methods differ only in what they find.
 
 mod capture;
 mod composite;
@@ -22,7 +22,7 @@ pub use depth_pyramid::DepthPyramid;
 pub use direct_view::DirectView;
 pub use fallback::{FallbackStage, Filling};
 pub use footprint::Footprint;
-pub use layered_capture::{LayeredCapture, LayeredCaptureStage};
+pub use layered_capture::{LayeredCapture, LayeredCaptureStage, Sides};
 pub use pixel_pass::{PixelPass, PixelStage};
 pub use record::{RecordMode, ReflectionRecord};
 pub use scene::GpuScene;

@@ -1,11 +1,16 @@
 //! Eight boxes at once.
 
+use std::ops::Range;
+
 use glam::Vec4;
 
 use super::splat::SplatRay;
 
 /// Children a node has at most.
 pub(super) const WIDTH: usize = 8;
+
+/// Packs a leaf has at most.
+pub(super) const LEAF_PACKS: usize = 2;
 
 /// Vectors of four that make up the width.
 const HALVES: usize = WIDTH / 4;
@@ -19,26 +24,39 @@ pub(super) struct Node {
     children: [Child; WIDTH],
 }
 
-/// Index of a node, or of a leaf's pack of triangles.
+/// Index of a node, or of a leaf's packs of triangles.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct Child(u32);
 
 impl Child {
     const LEAF: u32 = 1 << 31;
+    /// Where a leaf has its number of packs, less one.
+    const COUNT: u32 = 30;
 
     pub fn node(index: usize) -> Self {
         Child(index as u32)
     }
 
-    pub fn pack(index: usize) -> Self {
-        Child(index as u32 | Self::LEAF)
+    /// One to [`LEAF_PACKS`] packs side by side.
+    pub fn leaf(packs: Range<usize>) -> Self {
+        Child(packs.start as u32 | (packs.len() as u32 - 1) << Self::COUNT | Self::LEAF)
     }
 
-    /// The index of a pack, or else of a node.
-    pub fn index(self) -> Result<usize, usize> {
-        let index = (self.0 & !Self::LEAF) as usize;
-        if self.0 & Self::LEAF != 0 { Ok(index) } else { Err(index) }
+    #[inline]
+    pub fn below(self) -> Below {
+        if self.0 & Self::LEAF == 0 {
+            return Below::Node(self.0 as usize);
+        }
+        let first = (self.0 & ((1 << Self::COUNT) - 1)) as usize;
+        let more = ((self.0 & !Self::LEAF) >> Self::COUNT) as usize;
+        Below::Packs(first..first + 1 + more)
     }
+}
+
+/// What a child is, by index.
+pub(super) enum Below {
+    Node(usize),
+    Packs(Range<usize>),
 }
 
 /// A child still to be visited and where the ray enters its box. As one number, of which the
@@ -73,6 +91,13 @@ impl Node {
             self.bounds[axis][1][slot / 4][slot % 4] = high[axis];
         }
         self.children[slot] = child;
+    }
+
+    /// The children that are set, by their slots.
+    #[cfg(test)]
+    pub fn children(&self) -> impl Iterator<Item = Child> {
+        let set = |&slot: &usize| self.bounds[0][0][slot / 4][slot % 4] < f32::INFINITY;
+        (0..WIDTH).filter(set).map(|slot| self.children[slot])
     }
 
     /// The children whose box the ray meets between `t_min` and `t_max`.

@@ -31,6 +31,16 @@ impl Pack {
         pack
     }
 
+    /// The triangles of the lanes in use.
+    #[cfg(test)]
+    pub fn indices(&self) -> impl Iterator<Item = u32> {
+        let used = |&lane: &usize| {
+            let corner = |corner: usize| self.corners[corner].map(|axis| axis[lane]);
+            corner(0) != corner(1)
+        };
+        (0..LANES).filter(used).map(|lane| self.triangles[lane])
+    }
+
     /// Ray against triangles by signed volumes, in the form Embree calls robust: an edge's volume is
     /// made from the difference and the sum of its corners, so two triangles that share the edge
     /// compute the same number with opposite signs and a ray between them cannot slip through.
