@@ -81,15 +81,18 @@ def render(scene: str, case: str, *, frame: int = 0, size: str = "1280x720", dum
     return _run(arguments + (["--dump", dump] if dump else []))
 
 
-def bench(scene: str, cases: list[str], *, size: str, frames: str, repeat: int) -> Run:
-    """Time and judge cases on a scene; one row a case.
+def bench(
+    scene: str, cases: list[str], *, size: str, frames: str, repeat: int, fallback: str = "none"
+) -> Run:
+    """Time and judge cases on a scene, what they leave or doubt filled by `fallback`; one row a case.
 
     MIRRORBENCH_RESULTS names a results file to take the rows from instead: nothing runs then.
     """
     if file := paths.results():
-        return _kept(file, scene, cases, size, frames)
+        return _kept(file, scene, cases, size, frames, fallback)
     arguments = ["bench", "--scene", scene, "--size", size, "--frames", frames]
     arguments += ["--repeat", str(repeat)]
+    arguments += ["--fallback", fallback] if fallback != "none" else []
     for case in cases:
         arguments += ["--case", case]
     return _run(arguments)
@@ -104,13 +107,14 @@ def follow(scene: str, cases: list[str], *, size: str, frames: str) -> Run:
     return _run(arguments)
 
 
-def _kept(file: Path, scene: str, cases: list[str], size: str, frames: str) -> Run:
+def _kept(file: Path, scene: str, cases: list[str], size: str, frames: str, fallback: str) -> Run:
     """The file's last row of each case."""
     begin, end = (int(n) for n in frames.split(".."))
-    wanted = (scene, [int(n) for n in size.split("x")], list(range(begin, end)))
+    wanted = (scene, [int(n) for n in size.split("x")], list(range(begin, end)), fallback)
     rows = {}
     for row in _rows(file):
-        if row["frame_gpu_ms"] and (row["scene"]["name"], row["size"], row["frames"]) == wanted:
+        about = (row["scene"]["name"], row["size"], row["frames"], row["fallback"])
+        if row["frame_gpu_ms"] and about == wanted:
             rows[row["case"]] = row
     if missing := [case for case in cases if case not in rows]:
         raise RunFailed(f"{file} has no times of {scene} at {size}, frames {frames}: {', '.join(missing)}")

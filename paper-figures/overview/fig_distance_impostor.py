@@ -1,22 +1,21 @@
 """Distance impostors: how fine the search must be.
 
-To be seen: The share of bad mirror pixels against the steps marched from the reflector to infinity, a
-line a number of secant steps inside the step that crossed; dotted, the published search, which starts
-at the texel in the mirrored direction, marches nowhere and corrects by secants alone. Left the columns,
-in the middle the lecture's flat mirror, right the poles of two centimetres' radius: only the share
-that shows the wrong object.
-
-Expected: planes need one secant; what is thinner than a step leaks, so the poles need short ones.
+To be seen: The share of bad mirror pixels against the steps marched from the reflector to infinity,
+a line a number of secant steps inside the step that crossed; dotted, the published search, which
+starts at the texel in the mirrored direction, marches nowhere and corrects by secants alone. Left
+the columns, in the middle the lecture's flat mirror, right the poles of two centimetres' radius:
+only the share that shows the wrong object. Expected: planes need one secant; what is thinner than a
+step leaks, so the poles need short ones.
 """
 
 import matplotlib.pyplot as plt
 
-from mirrorfigures import bench, main
+from mirrorfigures import main, render
 from mirrorfigures.charts import COLOURS, GRID, MARKERS
 from mirrorfigures.figure import QUIET
 
-SIZE = "480x270"
-MARCH = [1, 2, 4, 8, 16, 32, 64, 128, 256]
+SIZE = "320x180"
+MARCH = [1, 4, 16, 64, 256]
 REFINE = [0, 1, 3]
 PUBLISHED = "distance-impostor@published"
 # What is drawn of each scene's accuracy: title, value of a row.
@@ -41,9 +40,9 @@ def draw(figure):
     table = []
     for axis, (scene, (what, value)) in zip(axes, PANELS.items(), strict=True):
         cases = [PUBLISHED, *(case(m, r) for r in REFINE for m in MARCH)]
-        run = bench(scene, cases, size=SIZE, frames="0..1", repeat=1)
-        figure.cite(run)
-        share = {row["case"]: 100 * value(row) for row in run.rows}
+        runs = [render(scene, name, size=SIZE) for name in cases]
+        figure.cite(*runs)
+        share = {run.row["case"]: 100 * value(run.row) for run in runs}
         for refine, colour, marker in zip(REFINE, COLOURS, MARKERS, strict=False):
             line = [share[case(march, refine)] for march in MARCH]
             label = f"{refine} secant step{'s' if refine != 1 else ''}"
@@ -55,7 +54,8 @@ def draw(figure):
         axis.set_ylabel(f"{what}, % of mirror pixels")
         axis.grid(color=GRID, lw=0.6)
         table += [
-            [scene, row["case"], f"{fetches(row):.0f}", f"{share[row['case']]:.2f} %"] for row in run.rows
+            [scene, name, f"{fetches(run.row):.0f}", f"{share[name]:.2f} %"]
+            for name, run in zip(cases, runs, strict=True)
         ]
     axes[0].legend(fontsize=8)
     figure.plot = plot

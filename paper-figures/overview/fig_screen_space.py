@@ -1,10 +1,9 @@
 """Screen space: how much of a mirror the screen can answer.
 
-To be seen: A bar a scene. What the screen answers, rightly (to 1 px) or not; where it has no answer, whether
-the environment shown instead is right or something of the scene is lost.
-
-Expected: flat mirrors that face what the eye faces find most of it on the screen; convex ones in front of
-the eye send most rays past it, the nearer the eye the more, and the fallback has to do the work.
+To be seen: A bar a view. What the screen answers, rightly (to 1 px) or not; where it has no answer,
+whether the environment shown instead is right or wrong, which is what tracing mends. Expected:
+flat mirrors that face what the eye faces find most of it on the screen; convex ones in front of the
+eye send most rays past it, the nearer the eye the more, and the fallback has to do the work.
 """
 
 import matplotlib.pyplot as plt
@@ -33,22 +32,25 @@ PARTS = [
     ("from the screen, right", COLOURS[2]),
     ("from the screen, wrong", COLOURS[1]),
     ("not on the screen: environment, right", COLOURS[5]),
-    ("not on the screen: lost", "#c5cbd3"),
+    ("not on the screen: environment, wrong", "#c5cbd3"),
 ]
 
 
 def draw(figure):
     names, parts, table = [], [], []
     for scene, frame in VIEWS:
-        run = bench(scene, [CASE], size=SIZE, frames=f"{frame}..{frame + 1}", repeat=1)
-        figure.cite(run)
-        row = run.row
+        frames = f"{frame}..{frame + 1}"
+        alone, traced = (
+            bench(scene, [CASE], size=SIZE, frames=frames, repeat=1, fallback=fallback)
+            for fallback in ("none", "ray")
+        )
+        figure.cite(alone, traced)
+        row = alone.row
         names.append(f"{scene}, frame {frame}")
-        parts.append(shares(row))
+        parts.append(shares(row, bad(traced.row)))
         visits = row["counters"]["visits"] / row["reflector_pixels"]
-        bad = 100 * row["accuracy"]["bad_share"]["1"]
         numbers = [f"{100 * part:.1f} %" for part in parts[-1]]
-        table.append([names[-1], *numbers, f"{visits:.0f}", f"{bad:.1f} %"])
+        table.append([names[-1], *numbers, f"{visits:.0f}", f"{100 * bad(row):.1f} %"])
     plot, axis = plt.subplots(figsize=(8.2, 4.6), layout="constrained")
     plot.get_layout_engine().set(rect=(0, 0.12, 1, 0.88))
     left = [0.0] * len(names)
@@ -64,13 +66,15 @@ def draw(figure):
     figure.table(f"Where the answers come from, {SIZE}", header, table)
 
 
-def shares(row):
-    """A row's pixels as PARTS has them. What the screen answers wrongly is what is bad, but for what is
-    lost: where the truth shows a surface and the case the environment."""
+def bad(row):
+    return row["accuracy"]["bad_share"]["1"]
+
+
+def shares(row, wrong):
+    """A row's pixels as PARTS has them; `wrong` is what stays bad with all the others traced."""
     hits = row["counters"]["hits"] / row["reflector_pixels"]
-    lost = row["accuracy"]["missing"]
-    wrong = row["accuracy"]["bad_share"]["1"] - lost
-    return [hits - wrong, wrong, 1.0 - hits - lost, lost]
+    mended = bad(row) - wrong
+    return [hits - wrong, wrong, 1.0 - hits - mended, mended]
 
 
 if __name__ == "__main__":

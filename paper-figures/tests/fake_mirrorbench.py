@@ -197,7 +197,7 @@ def main() -> int:
     parser.add_argument("--dump", default="")
     parser.add_argument("--frames", default="0..1")
     parser.add_argument("--path", action="store_true")
-    for ignored in ("--repeat", "--record", "--truth-frames"):
+    for ignored in ("--repeat", "--record", "--truth-frames", "--fallback"):
         parser.add_argument(ignored)
     parser.add_argument("--json", action="store_true")
     args = parser.parse_args()
