@@ -5,7 +5,8 @@ enable primitive_index;
 struct Cube {
     clip_from_world: array<mat4x4<f32>, 6>,
     centre: vec3<f32>,
-    pad: u32,
+    // Nearest depth captured; a depth of z is stored as near / z.
+    near: f32,
 }
 @group(0) @binding(0) var<uniform> cube: Cube;
 

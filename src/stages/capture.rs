@@ -25,7 +25,19 @@ const FORMATS: [Format; 3] = [Format::Rgba16Float, Format::Rgba32Float, Format::
 pub struct CubeUniform {
     clip_from_world: [[[f32; 4]; 4]; 6],
     centre: [f32; 3],
-    pad: u32,
+    near: f32,
+}
+
+impl CubeUniform {
+    pub(super) fn new(centre: Vec3) -> CubeUniform {
+        CubeUniform {
+            clip_from_world: std::array::from_fn(|face| {
+                face_matrix(face as u32, centre).to_cols_array_2d()
+            }),
+            centre: centre.to_array(),
+            near: NEAR,
+        }
+    }
 }
 
 /// The images of one capture.
@@ -92,13 +104,7 @@ impl CaptureStage {
     ) -> Result<()> {
         target.centre = centre;
         let target = &*target;
-        let uniform = CubeUniform {
-            clip_from_world: std::array::from_fn(|face| {
-                face_matrix(face as u32, centre).to_cols_array_2d()
-            }),
-            centre: centre.to_array(),
-            pad: 0,
-        };
+        let uniform = CubeUniform::new(centre);
         let pass = frame.pass(&format!("{name}/capture-background")).graphics(&self.background);
         let clear = Load::Clear([0.0; 4]);
         scene
@@ -138,7 +144,7 @@ mod tests {
 
     #[test]
     fn the_cube_is_laid_out_as_its_wgsl_twin() {
-        assert_layout!("stages/capture.wgsl", "Cube", CubeUniform, clip_from_world, centre, pad);
+        assert_layout!("stages/capture.wgsl", "Cube", CubeUniform, clip_from_world, centre, near);
     }
 
     #[test]

@@ -1,5 +1,5 @@
 //! What every method shares on the GPU: the scene, the direct view, the reflectors' footprint, the
-//! captured map, the tree for rays, the record, the fallback and the composite. Each is written here once, so two
+//! captured map with one layer or several, the tree for rays, the record, the fallback and the composite. Each is written here once, so two
 //! methods differ only in what they find.
 
 mod capture;
@@ -7,6 +7,8 @@ mod composite;
 mod direct_view;
 mod fallback;
 mod footprint;
+mod interval_map;
+mod layered_capture;
 mod record;
 mod scene;
 mod scene_structure;
@@ -18,6 +20,8 @@ pub use composite::Composite;
 pub use direct_view::DirectView;
 pub use fallback::{FallbackStage, Filling};
 pub use footprint::Footprint;
+pub use interval_map::{Certificate, IntervalMap, IntervalStage};
+pub use layered_capture::{LayeredCapture, LayeredCaptureStage};
 pub use record::{RecordMode, ReflectionRecord};
 pub use scene::GpuScene;
 pub use scene_structure::SceneStructure;

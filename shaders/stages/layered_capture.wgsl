@@ -1,0 +1,82 @@
+enable primitive_index;
+// One layer of surfaces into the six faces of a cube: of what lies behind the layer before, the
+// nearest. Every layer is drawn by this one shader, so depths of the same surface are equal to the
+// last bit and comparing them is exact.
+#import bindings::surface::{Surface, surface_colour, surface_vertex}
+#ifdef SIDES
+#import bindings::scene::objects
+#endif
+
+struct Cube {
+    clip_from_world: array<mat4x4<f32>, 6>,
+    centre: vec3<f32>,
+    // Nearest depth captured; a depth of z is rasterised as near / z.
+    near: f32,
+}
+@group(0) @binding(0) var<uniform> cube: Cube;
+// Depths of the layer before, as rasterised: infinite before the first, 0 where it has nothing.
+@group(0) @binding(1) var depth_before: texture_2d_array<f32>;
+
+// The face drawn into.
+var<immediate> face: u32;
+
+// A surface this many units in the last place behind another still counts as the same: two
+// triangles that share an edge may both, on other devices, cover a texel on it.
+const SAME_ULPS: u32 = 2u;
+// The largest half float.
+const LARGEST_HALF: f32 = 65504.0;
+
+@vertex
+fn vertex(
+    @builtin(vertex_index) index: u32,
+    @builtin(instance_index) object: u32,
+) -> Surface {
+    var out = surface_vertex(index, object);
+    out.clip = cube.clip_from_world[face] * vec4(out.position, 1.0);
+    return out;
+}
+
+struct Texel {
+    @location(0) surface: vec4<u32>,
+    @location(1) radiance: vec4<f32>,
+#ifdef RECORD_FULL
+    // Object, triangle.
+    @location(2) ids: vec4<u32>,
+    @location(3) depth: vec4<f32>,
+#else
+    @location(2) depth: vec4<f32>,
+#endif
+}
+
+@fragment
+fn fragment(
+    in: Surface,
+    @builtin(primitive_index) triangle: u32,
+#ifdef SIDES
+    @builtin(front_facing) front: bool,
+#endif
+) -> Texel {
+    let depth = in.clip.z;
+    // 1 / z is affine over a face for a plane, so these are exact for the triangle's own.
+    let gradient = vec2(dpdx(depth), dpdy(depth)) / cube.near;
+    let before = textureLoad(depth_before, vec2<u32>(in.clip.xy), face, 0).x;
+    // Positive floats are in the order of their bits.
+    if bitcast<u32>(depth) + SAME_ULPS >= bitcast<u32>(before) {
+        discard;
+    }
+    var out: Texel;
+    var packed = pack2x16float(clamp(gradient, vec2(-LARGEST_HALF), vec2(LARGEST_HALF)));
+#ifdef SIDES
+    // The lowest bits of the two halves say of which side and of what kind of object the surface is; see
+    // bindings/interval_map.wgsl. A face of the cube is a mirrored view: fronts turn the other way.
+    let closed = objects[in.object].selected == 1u;
+    packed = (packed & 0xfffefffeu) | select(0u, 1u, front) | select(0x10000u, 0u, closed);
+#endif
+    out.surface = vec4(bitcast<u32>(depth / cube.near), packed, 0u, 0u);
+    out.radiance = vec4(surface_colour(in, in.position - cube.centre), 1.0);
+#ifdef RECORD_FULL
+    out.ids = vec4(in.object, triangle, 0u, 0u);
+#endif
+    out.depth = vec4(depth, 0.0, 0.0, 0.0);
+    return out;
+}
