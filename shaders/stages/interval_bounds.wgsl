@@ -3,7 +3,7 @@
 // Across each border of a texel every surface should go on. Two surfaces do where their planes meet between the
 // two texels' centres: on a smooth surface tangents do, at a corner the two faces do. A surface that does not go
 // on ends somewhere between the two centres, and neither sample says where.
-#import bindings::interval_map::{EMPTY, Patch, SLOTS, height, interval_map, patch_at}
+#import bindings::interval_map::{Patch, SLOTS, height, interval_map, patch_at}
 #import bindings::layers::layered_map
 #import common::cube::{cube_direction, cube_texel}
 #import common::face_ray::on_face
@@ -19,57 +19,70 @@ const NOTHING: vec2<f32> = vec2(3.0e38, -3.0e38);
 const FRONT: u32 = 0u;
 const BACK: u32 = 1u;
 const SHEET: u32 = 2u;
-
-// Fronts and backs of all slots, and the farthest.
-const MOST: u32 = 2u * SLOTS + 1u;
+const ABSENT: u32 = 3u;
 
 // All surfaces kept behind a texel.
 struct Column {
     face: u32,
-    // Of the texel's centre, in texels.
-    centre: vec2<f32>,
-    count: u32,
-    surfaces: array<Patch, MOST>,
-    roles: array<u32, MOST>,
+    place: vec2<i32>,
+    order: u32,
 }
 
-fn column_of(face: u32, place: vec2<i32>) -> Column {
-    var column: Column;
-    column.face = face;
-    column.centre = vec2<f32>(place) + 0.5;
-    let order = textureLoad(interval_order, place, face, 0).x;
-    for (var slot = 0u; slot < SLOTS; slot++) {
-        let layers = (order >> (8u * slot)) & 0xffu;
-        if layers == EMPTY {
-            break;
+struct Listed {
+    surface: Patch,
+    role: u32,
+}
+
+fn column_at(face: u32, place: vec2<i32>) -> Column {
+    return Column(face, place, textureLoad(interval_order, place, face, 0).x);
+}
+
+// How many numbers a column's surfaces have: two a slot in use, and the farthest.
+fn numbers(column: Column) -> u32 {
+    return 2u * (SLOTS - countLeadingZeros(~column.order) / 8u) + 1u;
+}
+
+fn is_farthest(column: Column, number: u32) -> bool {
+    return number + 1u == numbers(column);
+}
+
+fn listed(column: Column, number: u32) -> Listed {
+    var layer = interval_map.peeled;
+    var role = SHEET;
+    if !is_farthest(column, number) {
+        let slot = column.order >> (8u * (number / 2u));
+        let front = slot & 15u;
+        let back = (slot >> 4u) & 15u;
+        let second = (number & 1u) == 1u;
+        if second && front == back {
+            return Listed(Patch(0.0, vec2(0.0)), ABSENT);
         }
-        let front = layers & 15u;
-        let back = layers >> 4u;
-        if front == back {
-            add(&column, patch_at(face, place, front), SHEET);
-        } else {
-            add(&column, patch_at(face, place, front), FRONT);
-            add(&column, patch_at(face, place, back), BACK);
-        }
+        layer = select(front, back, second);
+        role = select(select(FRONT, BACK, second), SHEET, front == back);
     }
-    let far = patch_at(face, place, interval_map.peeled);
-    if far.w > 0.0 {
-        add(&column, far, SHEET);
-    }
-    return column;
+    let surface = patch_at(column.face, column.place, layer);
+    return Listed(surface, select(ABSENT, role, surface.w > 0.0));
 }
 
-fn add(column: ptr<function, Column>, surface: Patch, role: u32) {
-    (*column).surfaces[(*column).count] = surface;
-    (*column).roles[(*column).count] = role;
-    (*column).count += 1u;
+// The surface's w at a place given in texels of a face next to it, or of its own.
+fn height_at(column: Column, surface: Patch, face: u32, uv: vec2<f32>) -> f32 {
+    let centre = vec2<f32>(column.place) + 0.5;
+    if column.face == face {
+        return height(surface, uv - centre);
+    }
+    let size = f32(layered_map.size);
+    let p = on_face(column.face, cube_direction(face, uv / size));
+    return p.z * height(surface, 0.5 * size * (p.xy / p.z + 1.0) - centre);
 }
 
-// The surface's w in a direction of length 1 along some face's axis, as that face has it.
-fn height_along(column: ptr<function, Column>, surface: u32, direction: vec3<f32>) -> f32 {
-    let p = on_face((*column).face, direction);
-    let uv = 0.5 * (p.xy / p.z + 1.0) * f32(layered_map.size);
-    return p.z * height((*column).surfaces[surface], uv - (*column).centre);
+// The texel across a border, on the next face where the cube ends.
+fn column_beyond(face: u32, centre: vec2<f32>) -> Column {
+    let size = f32(layered_map.size);
+    if all(centre > vec2(0.0)) && all(centre < vec2(size)) {
+        return column_at(face, vec2<i32>(centre));
+    }
+    let next = cube_texel(cube_direction(face, centre / size));
+    return column_at(next.face, vec2<i32>(min(next.uv * size, vec2(size - 1.0))));
 }
 
 // Whether two surfaces that differ by so much at the two centres are one that goes on. Planes that meet a little
@@ -86,6 +99,94 @@ fn hull(range: vec2<f32>, w: f32) -> vec2<f32> {
     return vec2(min(range.x, w), max(range.y, w));
 }
 
+// Lowest and highest w found so far.
+struct Bounds {
+    near: vec2<f32>,
+    far: vec2<f32>,
+    doubt: vec2<f32>,
+}
+
+// What one border adds to a texel's bounds.
+fn across(bounds: Bounds, own: Column, side: u32) -> Bounds {
+    var out = bounds;
+    let centre = vec2<f32>(own.place) + 0.5;
+    let sign = select(-1.0, 1.0, (side & 1u) == 1u);
+    let step = select(vec2(sign, 0.0), vec2(0.0, sign), side >= 2u);
+    let beyond = centre + step;
+    let border = centre + 0.5 * step;
+    let other = column_beyond(own.face, beyond);
+    // Of the other's surfaces those that go on.
+    var matched = 0u;
+    for (var i = 0u; i < numbers(own); i++) {
+        let mine = listed(own, i);
+        if mine.role == ABSENT {
+            continue;
+        }
+        let w = mine.surface.w;
+        let w_beyond = height(mine.surface, step);
+        var goes = false;
+        for (var j = 0u; j < numbers(other); j++) {
+            let theirs = listed(other, j);
+            if theirs.role != mine.role {
+                continue;
+            }
+            let differs_here = w - height_at(other, theirs.surface, own.face, centre);
+            let differs_there = w_beyond - height_at(other, theirs.surface, own.face, beyond);
+            if !goes_on(differs_here, differs_there, w) {
+                continue;
+            }
+            goes = true;
+            matched |= 1u << j;
+            if mine.role == SHEET {
+                // Where a ray may slip through between the two; see bindings/interval_search.wgsl.
+                let one = height_at(other, theirs.surface, own.face, border + 0.5 * step.yx);
+                let two = height_at(other, theirs.surface, own.face, border - 0.5 * step.yx);
+                if is_farthest(own, i) {
+                    out.far = hull(hull(out.far, one), two);
+                } else {
+                    out.near = hull(hull(out.near, one), two);
+                }
+            }
+        }
+#ifdef EDGES
+        if !goes {
+            out.doubt = hull(hull(out.doubt, w), height(mine.surface, 0.5 * step));
+        }
+#endif
+    }
+#ifdef EDGES
+    for (var j = 0u; j < numbers(other); j++) {
+        let theirs = listed(other, j);
+        if theirs.role != ABSENT && (matched & (1u << j)) == 0u {
+            let w = height_at(other, theirs.surface, own.face, beyond);
+            let w_border = height_at(other, theirs.surface, own.face, border);
+            out.doubt = hull(hull(out.doubt, w), w_border);
+        }
+    }
+#endif
+    return out;
+}
+
+// What the texel's own surfaces span.
+fn within(own: Column) -> Bounds {
+    var out = Bounds(NOTHING, NOTHING, NOTHING);
+    for (var i = 0u; i < numbers(own); i++) {
+        let mine = listed(own, i);
+        if mine.role == ABSENT {
+            continue;
+        }
+        let reach = 0.5 * (abs(mine.surface.gradient.x) + abs(mine.surface.gradient.y));
+        let low = mine.surface.w - reach;
+        let high = mine.surface.w + reach;
+        if is_farthest(own, i) {
+            out.far = hull(hull(out.far, low), high);
+        } else {
+            out.near = hull(hull(out.near, low), high);
+        }
+    }
+    return out;
+}
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let size = layered_map.size;
@@ -94,87 +195,21 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let face = id.y / size;
     let place = vec2<i32>(vec2(id.x, id.y % size));
-    var own = column_of(face, place);
-    let texel = 1.0 / f32(size);
-    var near = NOTHING;
-    var far = NOTHING;
-    let far_w = patch_at(face, place, interval_map.peeled).w;
-    for (var i = 0u; i < own.count; i++) {
-        let is_far = far_w > 0.0 && i + 1u == own.count;
-        for (var corner = 0u; corner < 4u; corner++) {
-            let away = vec2(f32(corner & 1u), f32(corner >> 1u)) - 0.5;
-            let w = max(height(own.surfaces[i], away), 0.0);
-            if is_far { far = hull(far, w); } else { near = hull(near, w); }
-        }
-    }
-    var doubt = NOTHING;
+    let own = column_at(face, place);
+    var bounds = within(own);
     let unstored = bitcast<f32>(textureLoad(interval_order, place, face, 0).y);
     if unstored > 0.0 {
-        doubt = hull(hull(doubt, far_w), unstored);
+        bounds.doubt = hull(vec2(unstored), patch_at(face, place, interval_map.peeled).w);
     }
     for (var side = 0u; side < 4u; side++) {
-        let step = select(-1.0, 1.0, (side & 1u) == 1u);
-        let across = select(vec2(step, 0.0), vec2(0.0, step), side >= 2u);
-        let along = across.yx;
-        let beyond = cube_direction(face, (own.centre + across) * texel);
-        let border = own.centre + 0.5 * across;
-        let ends = array<vec3<f32>, 2>(
-            cube_direction(face, (border - 0.5 * along) * texel),
-            cube_direction(face, (border + 0.5 * along) * texel),
-        );
-        let middle = cube_direction(face, border * texel);
-        let here = cube_direction(face, own.centre * texel);
-        let next = cube_texel(beyond);
-        let next_place = vec2<i32>(min(vec2<u32>(next.uv * f32(size)), vec2(size - 1u)));
-        var other = column_of(next.face, next_place);
-        var matched = 0u;
-        for (var i = 0u; i < own.count; i++) {
-            let w = own.surfaces[i].w;
-            let w_beyond = height_along(&own, i, beyond);
-            var goes = false;
-            for (var j = 0u; j < other.count; j++) {
-                if own.roles[i] != other.roles[j] {
-                    continue;
-                }
-                let differs_here = w - height_along(&other, j, here);
-                let differs_there = w_beyond - height_along(&other, j, beyond);
-                if !goes_on(differs_here, differs_there, w) {
-                    continue;
-                }
-                goes = true;
-                matched |= 1u << j;
-                if own.roles[i] == SHEET {
-                    // A ray may slip through between the two at the border; see the search.
-                    for (var end = 0u; end < 2u; end++) {
-                        let w_end = max(height_along(&other, j, ends[end]), 0.0);
-                        if far_w > 0.0 && i + 1u == own.count {
-                            far = hull(far, w_end);
-                        } else {
-                            near = hull(near, w_end);
-                        }
-                    }
-                }
-            }
-#ifdef EDGES
-            if !goes {
-                doubt = hull(hull(doubt, w), height_along(&own, i, middle));
-            }
-#endif
-        }
-#ifdef EDGES
-        for (var j = 0u; j < other.count; j++) {
-            if (matched & (1u << j)) == 0u {
-                let w = height_along(&other, j, beyond);
-                doubt = hull(hull(doubt, w), height_along(&other, j, middle));
-            }
-        }
-#endif
+        bounds = across(bounds, own, side);
     }
-    doubt = max(doubt, vec2(0.0, -3.0e38));
     // A ray that meets what is doubtful has to be told, so it is part of the bounds.
-    near = vec2(min(near.x, doubt.x), max(near.y, doubt.y));
+    let doubt = bounds.doubt;
+    let near = vec2(min(bounds.near.x, doubt.x), max(bounds.near.y, doubt.y));
     // Room for the rounding of the search.
     let slack = vec4(1.0 - 1.0e-5, 1.0 + 1.0e-5, 1.0 - 1.0e-5, 1.0 + 1.0e-5);
-    textureStore(interval_bounds, place, face, clamp(vec4(near, far) * slack, vec4(-3.0e38), vec4(3.0e38)));
+    let all = clamp(vec4(near, bounds.far) * slack, vec4(-3.0e38), vec4(3.0e38));
+    textureStore(interval_bounds, place, face, all);
     textureStore(interval_doubt, place, face, vec4(bitcast<vec2<u32>>(doubt), 0u, 0u));
 }
