@@ -44,13 +44,18 @@ struct Passage {
     back: vec2<i32>,
     // It comes over a seam of the cube.
     seam: bool,
+    // Step to the texel it goes to; 0 where it ends here or leaves the face.
+    forth: vec2<i32>,
 }
 
 // Where a ray meets something on its passage over a texel: a share of the passage, above 1 nowhere.
 struct Meeting {
     share: f32,
     layer: u32,
+    is_sheet: bool,
 }
+
+const NOWHERE: Meeting = Meeting(2.0, 0u, false);
 
 // How far an end of a passage is in front of a surface.
 fn ahead(surface: Patch, at: vec3<f32>) -> f32 {
@@ -63,21 +68,49 @@ fn meet_solid(front: Patch, back: Patch, layers: vec2<u32>, passage: Passage) ->
     let before = vec2(ahead(front, passage.enter), -ahead(back, passage.enter));
     let after = vec2(ahead(front, passage.leave), -ahead(back, passage.leave));
     if any((before > vec2(0.0)) & (after > vec2(0.0))) {
-        return Meeting(2.0, 0u);
+        return NOWHERE;
     }
     let share = before / (before - after);
     let enters = select(vec2(0.0), share, before > vec2(0.0));
     let leaves = select(vec2(1.0), share, after > vec2(0.0));
     let enter = max(enters.x, enters.y);
     if enter > min(leaves.x, leaves.y) {
-        return Meeting(2.0, 0u);
+        return NOWHERE;
     }
     // From the side: the nearer of the two.
     let from_back = select(enters.y > enters.x, before.y > before.x, enter == 0.0);
-    return Meeting(enter, select(layers.x, layers.y, from_back));
+    return Meeting(enter, select(layers.x, layers.y, from_back), false);
 }
 
-// Whether the ray slipped through at the border it enters by, between this surface and where the texel before
+// The layer of a column's sheet by its number, the farthest surface after all slots; 255 where there is none.
+fn sheet_layer(order: u32, number: u32) -> u32 {
+    let layers = (order >> (8u * number)) & 0xffu;
+    let in_slot = select(EMPTY, layers & 15u, (layers & 15u) == (layers >> 4u));
+    return select(in_slot, interval_map.peeled, number == SLOTS);
+}
+
+// Whether a place on the border to a neighbouring texel, relative to both centres, is on the given side of the
+// neighbour's part of a sheet. Only where the two parts are one, as in stages/interval_bounds.wgsl.
+fn sheet_beyond(passage: Passage, step: vec2<i32>, at: vec3<f32>, surface: Patch, behind: bool) -> bool {
+    let place = passage.texel + step;
+    let there = at - vec3(vec2<f32>(step), 0.0);
+    let order = textureLoad(interval_order, place, passage.face, 0).x;
+    for (var number = 0u; number <= SLOTS; number++) {
+        let layer = sheet_layer(order, number);
+        if layer == EMPTY {
+            continue;
+        }
+        let other = patch_at(passage.face, place, layer);
+        let gap = height(other, there.xy) - height(surface, at.xy);
+        let joined = other.w > 0.0 && abs(gap) <= 16.0 / f32(layered_map.size) * surface.w;
+        if joined && (ahead(other, there) < 0.0) == behind {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Whether the ray slipped through at the border it enters by, between this sheet and where the texel before
 // has it: ahead of one and behind the other.
 fn slipped(surface: Patch, passage: Passage) -> bool {
     let here = ahead(surface, passage.enter);
@@ -87,23 +120,31 @@ fn slipped(surface: Patch, passage: Passage) -> bool {
     if all(passage.back == vec2(0)) {
         return false;
     }
-    let place = passage.texel + passage.back;
-    let enter = passage.enter - vec3(vec2<f32>(passage.back), 0.0);
+    return sheet_beyond(passage, passage.back, passage.enter, surface, here >= 0.0);
+}
+
+// Whether the texel the ray goes to agrees that it has met something. Where it grazes a bent surface, the plane
+// of one texel reaches beyond it.
+fn confirmed(passage: Passage, first: Meeting) -> bool {
+    if all(passage.forth == vec2(0)) {
+        return true;
+    }
+    if first.is_sheet {
+        let surface = patch_at(passage.face, passage.texel, first.layer);
+        let behind = ahead(surface, passage.leave) < 0.0;
+        return sheet_beyond(passage, passage.forth, passage.leave, surface, behind);
+    }
+    let place = passage.texel + passage.forth;
+    let there = passage.leave - vec3(vec2<f32>(passage.forth), 0.0);
     let order = textureLoad(interval_order, place, passage.face, 0).x;
-    for (var slot = 0u; slot <= SLOTS; slot++) {
-        var layer = interval_map.peeled;
-        if slot < SLOTS {
-            let layers = (order >> (8u * slot)) & 0xffu;
-            if layers == EMPTY || (layers & 15u) != (layers >> 4u) {
-                continue;
-            }
-            layer = layers & 15u;
+    for (var slot = 0u; slot < SLOTS; slot++) {
+        let layers = (order >> (8u * slot)) & 0xffu;
+        if layers == EMPTY {
+            break;
         }
-        let other = patch_at(passage.face, place, layer);
-        // Only where the two are one surface, as in stages/interval_bounds.wgsl.
-        let gap = height(other, enter.xy) - height(surface, passage.enter.xy);
-        let joined = abs(gap) <= 16.0 / f32(layered_map.size) * surface.w;
-        if other.w > 0.0 && joined && (ahead(other, enter) < 0.0) != (here < 0.0) {
+        let front = patch_at(passage.face, place, layers & 15u);
+        let back = patch_at(passage.face, place, layers >> 4u);
+        if ahead(front, there) <= 0.0 && ahead(back, there) >= 0.0 {
             return true;
         }
     }
@@ -112,18 +153,18 @@ fn slipped(surface: Patch, passage: Passage) -> bool {
 
 fn meet_sheet(surface: Patch, layer: u32, passage: Passage, bounds: vec2<f32>) -> Meeting {
     if surface.w <= 0.0 {
-        return Meeting(2.0, 0u);
+        return NOWHERE;
     }
     let before = ahead(surface, passage.enter);
     let after = ahead(surface, passage.leave);
     if (before < 0.0) != (after < 0.0) {
-        return Meeting(before / (before - after), layer);
+        return Meeting(before / (before - after), layer, true);
     }
     let w = passage.enter.z;
     if w >= bounds.x && w <= bounds.y && slipped(surface, passage) {
-        return Meeting(0.0, layer);
+        return Meeting(0.0, layer, true);
     }
-    return Meeting(2.0, 0u);
+    return NOWHERE;
 }
 
 fn nearer(a: Meeting, b: Meeting) -> Meeting {
@@ -165,6 +206,7 @@ fn meet_texel(passage: Passage, hit: ptr<function, MapHit>) -> bool {
         return false;
     }
     (*hit).found = true;
+    (*hit).flag |= !confirmed(passage, first);
     (*hit).face = passage.face;
     (*hit).texel = passage.texel;
     (*hit).layer = first.layer;
@@ -219,27 +261,29 @@ fn search_face(segment: FaceSegment, seam: bool, scan: bool, hit: ptr<function, 
             cell = 2 * cell + select(vec2(0), vec2(1), crossed == rises);
             continue;
         }
+        let vertical = crossings.x <= crossings.y;
+        let step = select(vec2(0, forward.y), vec2(forward.x, 0), vertical);
+        let next = cell + step;
+        let stays = all(next >= vec2(0)) && all(next < vec2(size >> u32(level)));
+        let ends = leave >= 1.0 || !stays;
         if near {
             let centre = vec3(vec2<f32>(cell) + 0.5, 0.0);
             let enters = begin + at * way - centre;
             let leaves = begin + leave * way - centre;
-            let passage = Passage(segment.face, cell, enters, leaves, back, seam && at == 0.0);
+            let forth = select(step, vec2(0), ends);
+            let over_seam = seam && at == 0.0;
+            let passage = Passage(segment.face, cell, enters, leaves, back, over_seam, forth);
             if meet_texel(passage, hit) {
                 return true;
             }
         }
-        if leave >= 1.0 {
+        if ends {
             return false;
         }
         at = leave;
-        let vertical = crossings.x <= crossings.y;
-        let step = select(vec2(0, forward.y), vec2(forward.x, 0), vertical);
         let parent = cell >> vec2(1u);
-        cell += step;
+        cell = next;
         back = -step;
-        if any(cell < vec2(0)) || any(cell >= vec2(size >> u32(level))) {
-            return false;
-        }
         if !scan && level + 1 < i32(interval_map.levels) && any((cell >> vec2(1u)) != parent) {
             cell = cell >> vec2(1u);
             level += 1;
