@@ -2,7 +2,7 @@
 // farthest surface; over them a pyramid of bounds. Filled by stages/interval_map.rs.
 #define_import_path bindings::interval_map
 
-#import bindings::layers::{layer_surface}
+#import bindings::layers::{layer_surface, layered_map}
 
 struct IntervalMap {
     // Layers peeled; the one after them holds the farthest surface.
@@ -39,4 +39,10 @@ fn patch_at(face: u32, place: vec2<i32>, layer: u32) -> Patch {
 
 fn height(surface: Patch, from_centre: vec2<f32>) -> f32 {
     return surface.w + dot(surface.gradient, from_centre);
+}
+
+// The most by which two neighbouring texels' planes of one surface with this w may differ where they meet. A
+// surface that changes by more in a texel falls away eight times as fast as it goes sideways.
+fn joint(w: f32) -> f32 {
+    return 16.0 / f32(layered_map.size) * w;
 }

@@ -3,7 +3,7 @@
 // Across each border of a texel every surface should go on. Two surfaces do where their planes meet between the
 // two texels' centres: on a smooth surface tangents do, at a corner the two faces do. A surface that does not go
 // on ends somewhere between the two centres, and neither sample says where.
-#import bindings::interval_map::{Patch, SLOTS, height, interval_map, patch_at}
+#import bindings::interval_map::{Patch, SLOTS, height, interval_map, joint, patch_at}
 #import bindings::layers::layered_map
 #import common::cube::{cube_direction, cube_texel}
 #import common::face_ray::on_face
@@ -86,13 +86,12 @@ fn column_beyond(face: u32, centre: vec2<f32>) -> Column {
 }
 
 // Whether two surfaces that differ by so much at the two centres are one that goes on. Planes that meet a little
-// beyond a centre are let pass: meshes bend between texels too. A surface so steep that it would fall by more than
-// eight times a texel's width is not: it ends.
+// beyond a centre are let pass: meshes bend between texels too. A surface too steep for a `joint` is not: it ends.
 fn goes_on(here: f32, there: f32, w: f32) -> bool {
     let most = max(abs(here), abs(there));
     let least = min(abs(here), abs(there));
     let bend = here * there <= 0.0 || 3.0 * least <= most || most <= 1.0e-4 * w;
-    return bend && most <= 16.0 / f32(layered_map.size) * w;
+    return bend && most <= joint(w);
 }
 
 fn hull(range: vec2<f32>, w: f32) -> vec2<f32> {
@@ -130,22 +129,28 @@ fn across(bounds: Bounds, own: Column, side: u32) -> Bounds {
             if theirs.role != mine.role {
                 continue;
             }
-            let differs_here = w - height_at(other, theirs.surface, own.face, centre);
-            let differs_there = w_beyond - height_at(other, theirs.surface, own.face, beyond);
-            if !goes_on(differs_here, differs_there, w) {
-                continue;
-            }
-            goes = true;
-            matched |= 1u << j;
             if mine.role == SHEET {
                 // Where a ray may slip through between the two; see bindings/interval_search.wgsl.
-                let one = height_at(other, theirs.surface, own.face, border + 0.5 * step.yx);
-                let two = height_at(other, theirs.surface, own.face, border - 0.5 * step.yx);
-                if is_farthest(own, i) {
-                    out.far = hull(hull(out.far, one), two);
-                } else {
-                    out.near = hull(hull(out.near, one), two);
+                let along = 0.5 * step.yx;
+                let one = height_at(other, theirs.surface, own.face, border + along);
+                let two = height_at(other, theirs.surface, own.face, border - along);
+                let gap_one = one - height(mine.surface, 0.5 * step + along);
+                let gap_two = two - height(mine.surface, 0.5 * step - along);
+                let gap = select(min(abs(gap_one), abs(gap_two)), 0.0, gap_one * gap_two < 0.0);
+                if gap <= joint(w) {
+                    let both = hull(hull(NOTHING, one), two);
+                    if is_farthest(own, i) {
+                        out.far = hull(hull(out.far, both.x), both.y);
+                    } else {
+                        out.near = hull(hull(out.near, both.x), both.y);
+                    }
                 }
+            }
+            let differs_here = w - height_at(other, theirs.surface, own.face, centre);
+            let differs_there = w_beyond - height_at(other, theirs.surface, own.face, beyond);
+            if goes_on(differs_here, differs_there, w) {
+                goes = true;
+                matched |= 1u << j;
             }
         }
 #ifdef EDGES
