@@ -1,4 +1,5 @@
-// The record a compute pass writes. `RECORD_FULL` adds the evidence to the radiance.
+// The record, as a compute pass writes it or a fragment shader. `RECORD_FULL` adds the evidence to
+// the radiance.
 #define_import_path bindings::record
 
 #import common::record::{Chain, packed_ids, packed_radiance}
@@ -18,6 +19,27 @@ fn write_record(pixel: vec2<u32>, chain: Chain) {
     textureStore(record_last, pixel, chain.last);
     textureStore(record_ids, pixel, packed_ids(chain));
 #endif
+}
+
+// The record's images as what a fragment shader draws.
+struct RecordTargets {
+    @location(0) radiance: vec4<f32>,
+#ifdef RECORD_FULL
+    @location(1) point: vec4<f32>,
+    @location(2) last: vec4<f32>,
+    @location(3) ids: vec4<u32>,
+#endif
+}
+
+fn record_targets(chain: Chain) -> RecordTargets {
+    var out: RecordTargets;
+    out.radiance = packed_radiance(chain);
+#ifdef RECORD_FULL
+    out.point = chain.point;
+    out.last = chain.last;
+    out.ids = packed_ids(chain);
+#endif
+    return out;
 }
 
 // Count device-independent work in the method's counter of this rank.

@@ -4,6 +4,7 @@
 #import bindings::departure::depart
 #import bindings::scene::{materials, objects}
 #import common::camera::{Camera, arriving}
+#import common::record::NO_OBJECT
 
 @group(0) @binding(30) var<uniform> camera: Camera;
 @group(0) @binding(31) var reflector_id: texture_2d<u32>;
@@ -46,9 +47,20 @@ fn pixel_count() -> u32 {
     return pixels.count;
 }
 
+// That of a place in the list.
 fn mirror_point(index: u32) -> MirrorPoint {
     let packed = pixels.packed[index];
-    let pixel = vec2(packed & 0xffffu, packed >> 16u);
+    return mirror_point_at(vec2(packed & 0xffffu, packed >> 16u));
+}
+
+// Whether a pixel shows a reflector that the pass is meant for.
+fn is_asked(pixel: vec2<u32>) -> bool {
+    let object = textureLoad(reflector_id, pixel, 0).x;
+    return object != NO_OBJECT && objects[object].selected == 1u;
+}
+
+// That of a reflector's pixel.
+fn mirror_point_at(pixel: vec2<u32>) -> MirrorPoint {
     let position = textureLoad(reflector_position, pixel, 0);
     let normal = textureLoad(reflector_normal, pixel, 0);
     var at: MirrorPoint;

@@ -2,11 +2,12 @@
 // infinitely far away (Blinn & Newell 1976; six cube faces after Greene 1986). Glass is looked
 // through the same way, in the direction refracted at its first surface.
 // Patow 1995, section 1, figure 2, picks it by the reflector point W instead: `INDEX_SURFACE`.
-#import bindings::record::{write_record, count}
+#import bindings::record::{RecordTargets, count, record_targets, write_record}
 #import bindings::scene::objects
-#import bindings::view::{mirror_point, pixel_count}
+#import bindings::view::{MirrorPoint, is_asked, mirror_point, mirror_point_at, pixel_count}
+#import common::cover::cover
 #import common::cube::cube_texel
-#import common::record::{environment_chain, found_chain}
+#import common::record::{Chain, environment_chain, found_chain}
 
 struct Params {
     // Centre of the map, world.
@@ -20,15 +21,7 @@ struct Params {
 @group(0) @binding(3) var capture_ids: texture_2d_array<u32>;
 @group(0) @binding(4) var linear_filter: sampler;
 
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= pixel_count() {
-        return;
-    }
-    let at = mirror_point(id.x);
-    if !at.departs {
-        return;
-    }
+fn answer(at: MirrorPoint) -> Chain {
 #ifdef INDEX_SURFACE
     let direction = at.position - params.centre;
 #else
@@ -50,5 +43,36 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     count(0u, 1u);
 #endif
     chain.lobe = at.lobe;
-    write_record(at.pixel, chain);
+    return chain;
 }
+
+#ifdef STAGE_FRAGMENT
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return vec4(cover(index), 0.0, 1.0);
+}
+
+@fragment @early_depth_test(force)
+fn fragment(@builtin(position) position: vec4<f32>) -> RecordTargets {
+    let pixel = vec2<u32>(position.xy);
+    if !is_asked(pixel) {
+        discard;
+    }
+    let at = mirror_point_at(pixel);
+    if !at.departs {
+        discard;
+    }
+    return record_targets(answer(at));
+}
+#else
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= pixel_count() {
+        return;
+    }
+    let at = mirror_point(id.x);
+    if at.departs {
+        write_record(at.pixel, answer(at));
+    }
+}
+#endif

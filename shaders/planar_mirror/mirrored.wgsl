@@ -1,10 +1,11 @@
 enable primitive_index;
 // The scene mirrored in a plane and drawn through the stencil (Diefenbach & Badler 1997;
 // McReynolds & Blythe 1997): what lies behind the mirror's plane is clipped away.
+#import bindings::record::{RecordTargets, record_targets}
 #import bindings::scene::objects
 #import bindings::surface::{Surface, surface_colour, surface_vertex}
 #import common::camera::{Camera, arriving}
-#import common::record::{found_chain, packed_ids, packed_radiance}
+#import common::record::found_chain
 
 @group(0) @binding(30) var<uniform> camera: Camera;
 
@@ -35,17 +36,8 @@ fn vertex(
     return out;
 }
 
-struct Reflected {
-    @location(0) radiance: vec4<f32>,
-#ifdef RECORD_FULL
-    @location(1) point: vec4<f32>,
-    @location(2) last: vec4<f32>,
-    @location(3) ids: vec4<u32>,
-#endif
-}
-
 @fragment
-fn fragment(in: Surface, @builtin(primitive_index) triangle: u32) -> Reflected {
+fn fragment(in: Surface, @builtin(primitive_index) triangle: u32) -> RecordTargets {
     let height = dot(in.position, plane.normal) - plane.offset;
     // Two reflectors may share a stencil value; the id image decides.
     let seen = textureLoad(reflector_id, vec2<u32>(in.clip.xy), 0).x;
@@ -58,13 +50,5 @@ fn fragment(in: Surface, @builtin(primitive_index) triangle: u32) -> Reflected {
     let bounce = virtual_point - incident * (height / -dot(incident, plane.normal));
     let colour = surface_colour(in, in.position - bounce);
     let rank = objects[plane.object].rank;
-    let chain = found_chain(colour, in.position, bounce, in.object, triangle, rank);
-    var out: Reflected;
-    out.radiance = packed_radiance(chain);
-#ifdef RECORD_FULL
-    out.point = chain.point;
-    out.last = chain.last;
-    out.ids = packed_ids(chain);
-#endif
-    return out;
+    return record_targets(found_chain(colour, in.position, bounce, in.object, triangle, rank));
 }

@@ -1,6 +1,7 @@
 // The environment behind everything, over the whole image.
 #import bindings::scene::environment
 #import common::camera::{Camera, eye_direction}
+#import common::cover::cover
 
 @group(0) @binding(30) var<uniform> camera: Camera;
 
@@ -11,8 +12,7 @@ struct Varying {
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Varying {
-    // One triangle over the image.
-    let corner = vec2(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
+    let corner = cover(index);
     return Varying(vec4(corner, 0.0, 1.0), corner);
 }
 

@@ -1,3 +1,4 @@
+enable primitive_index;
 // What the eye sees directly: the diffuse shade of every surface, mirrors' included.
 #import bindings::surface::{Surface, surface_colour, surface_vertex}
 #import common::camera::{Camera, arriving}
@@ -19,11 +20,23 @@ struct Seen {
     // Distance along the camera's axis.
     @location(1) depth: f32,
     @location(2) object: u32,
+#ifdef RECORD_FULL
+    @location(3) triangle: u32,
+#endif
 }
 
 @fragment
+#ifdef RECORD_FULL
+fn fragment(in: Surface, @builtin(primitive_index) triangle: u32) -> Seen {
+#else
 fn fragment(in: Surface) -> Seen {
-    let colour = surface_colour(in, arriving(camera, in.position));
-    let depth = dot(in.position - camera.eye, camera.forward);
-    return Seen(vec4(colour, 1.0), depth, in.object);
+#endif
+    var seen: Seen;
+    seen.colour = vec4(surface_colour(in, arriving(camera, in.position)), 1.0);
+    seen.depth = dot(in.position - camera.eye, camera.forward);
+    seen.object = in.object;
+#ifdef RECORD_FULL
+    seen.triangle = triangle;
+#endif
+    return seen;
 }

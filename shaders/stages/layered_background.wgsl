@@ -1,6 +1,7 @@
 // Every layer of a layered capture before anything is drawn: nothing there, and behind it the
 // environment.
 #import bindings::scene::environment
+#import common::cover::cover
 #import common::cube::cube_direction
 #import common::record::NO_OBJECT
 
@@ -15,7 +16,7 @@ struct Varying {
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Varying {
-    let corner = vec2(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
+    let corner = cover(index);
     return Varying(vec4(corner, 0.0, 1.0), 0.5 * (corner + 1.0), layer % 6u);
 }
 

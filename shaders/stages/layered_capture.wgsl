@@ -2,10 +2,10 @@ enable primitive_index;
 // One layer of surfaces into the six faces of a cube: of what lies behind the layer before, the
 // nearest. Every layer is drawn by this one shader, so depths of the same surface are equal to the
 // last bit and comparing them is exact.
-#import bindings::surface::{Surface, surface_colour, surface_vertex}
-#ifdef SIDES
+#ifdef MARK_SIDES
 #import bindings::scene::objects
 #endif
+#import bindings::surface::{Surface, surface_colour, surface_vertex}
 
 struct Cube {
     clip_from_world: array<mat4x4<f32>, 6>,
@@ -52,9 +52,7 @@ struct Texel {
 fn fragment(
     in: Surface,
     @builtin(primitive_index) triangle: u32,
-#ifdef SIDES
-    @builtin(front_facing) front: bool,
-#endif
+    @builtin(front_facing) turned: bool,
 ) -> Texel {
     let depth = in.clip.z;
     // 1 / z is affine over a face for a plane, so these are exact for the triangle's own.
@@ -64,13 +62,19 @@ fn fragment(
     if bitcast<u32>(depth) + SAME_ULPS >= bitcast<u32>(before) {
         discard;
     }
+#ifdef FACING_ONLY
+    // A cube's faces are mirrored views, so what faces the centre runs clockwise.
+    if turned {
+        discard;
+    }
+#endif
     var out: Texel;
     var packed = pack2x16float(clamp(gradient, vec2(-LARGEST_HALF), vec2(LARGEST_HALF)));
-#ifdef SIDES
-    // The lowest bits of the two halves say of which side and of what kind of object the surface is; see
-    // bindings/interval_map.wgsl. A face of the cube is a mirrored view: fronts turn the other way.
+#ifdef MARK_SIDES
+    // The lowest bits of the two halves say that it is a back, and that its object has no inside; see
+    // bindings/interval_map.wgsl. Objects with an inside are those selected.
     let closed = objects[in.object].selected == 1u;
-    packed = (packed & 0xfffefffeu) | select(0u, 1u, front) | select(0x10000u, 0u, closed);
+    packed = (packed & 0xfffefffeu) | select(0u, 1u, turned) | select(0x10000u, 0u, closed);
 #endif
     out.surface = vec4(bitcast<u32>(depth / cube.near), packed, 0u, 0u);
     out.radiance = vec4(surface_colour(in, in.position - cube.centre), 1.0);

@@ -136,7 +136,7 @@ impl Engine {
         let parts = parts(device, &gpu_scene, case, registry, options)?;
         Ok(Engine {
             frame: Frame::new(device)?,
-            direct: DirectView::new(device, size)?,
+            direct: DirectView::new(device, size, mode)?,
             footprint: Footprint::new(device, size)?,
             record: ReflectionRecord::new(device, size, mode)?,
             refracted: refracted.transpose()?,

@@ -16,6 +16,7 @@ mod node;
 mod pack;
 mod splat;
 
+use std::cell::Cell;
 use std::time::Duration;
 
 use glam::{Vec2, Vec3};
@@ -28,16 +29,17 @@ use node::{Child, Node, Visit};
 use pack::{LANES, Pack};
 use splat::SplatRay;
 
-/// Visits that can wait on the program's stack; a tree that needs more has them on the heap.
-const STACK: usize = 128;
+thread_local! {
+    /// Room for the visits that wait, kept from ray to ray: clearing an array for each would cost
+    /// more than a node.
+    static WAITING: Cell<Vec<Visit>> = const { Cell::new(Vec::new()) };
+}
 
 /// A tree over world-space triangles.
 pub struct Bvh {
     /// The root first; empty without triangles.
     nodes: Vec<Node>,
     packs: Vec<Pack>,
-    /// How many visits can be waiting at once.
-    stack: usize,
 }
 
 /// Where a ray meets a triangle.
@@ -57,7 +59,7 @@ impl Bvh {
     /// Build over `triangles`; corners must be finite.
     pub fn new(triangles: &[[Vec3; 3]]) -> Self {
         if triangles.is_empty() {
-            return Bvh { nodes: Vec::new(), packs: Vec::new(), stack: 0 };
+            return Bvh { nodes: Vec::new(), packs: Vec::new() };
         }
         let list: Vec<Triangle> = triangles
             .iter()
@@ -83,32 +85,33 @@ impl Bvh {
         accept: impl Fn(u32, bool) -> bool,
     ) -> Option<BvhHit> {
         if self.nodes.is_empty() {
-            None
-        } else if self.stack <= STACK {
-            self.walk(&mut [Visit::default(); STACK], ray, range, accept)
-        } else {
-            self.walk(&mut vec![Visit::default(); self.stack], ray, range, accept)
+            return None;
         }
+        WAITING.with(|place| {
+            let mut waiting = place.take();
+            let nearest = self.walk(&mut waiting, ray, range, accept);
+            place.set(waiting);
+            nearest
+        })
     }
 
-    /// [`Bvh::nearest`] with room for `self.stack` visits.
+    /// [`Bvh::nearest`] of a tree with nodes; `waiting` starts and ends empty.
     #[inline]
     fn walk(
         &self,
-        waiting: &mut [Visit],
+        waiting: &mut Vec<Visit>,
         ray: &Ray,
         [t_min, mut t_max]: [f32; 2],
         accept: impl Fn(u32, bool) -> bool,
     ) -> Option<BvhHit> {
         let ray = SplatRay::new(ray);
         let mut nearest = None;
-        let mut height = 0;
         let mut child = Child::node(0);
         loop {
             match child.index() {
                 Err(node) => {
                     let met = self.nodes[node].meet(&ray, t_min, t_max);
-                    if let Some(visit) = push_all_but_nearest(met, waiting, &mut height) {
+                    if let Some(visit) = push_all_but_nearest(met, waiting) {
                         child = visit.child();
                         continue;
                     }
@@ -123,38 +126,31 @@ impl Bvh {
                 }
             }
             loop {
-                if height == 0 {
-                    return nearest;
-                }
-                height -= 1;
-                if waiting[height].enters() <= t_max {
+                let Some(visit) = waiting.pop() else { return nearest };
+                if visit.enters() <= t_max {
+                    child = visit.child();
                     break;
                 }
             }
-            child = waiting[height].child();
         }
     }
 }
 
 /// Returns the nearest of the children met; the others go on the stack, the nearer on top.
 #[inline]
-fn push_all_but_nearest(
-    mut met: node::Met,
-    waiting: &mut [Visit],
-    height: &mut usize,
-) -> Option<Visit> {
+fn push_all_but_nearest(mut met: node::Met, waiting: &mut Vec<Visit>) -> Option<Visit> {
     let mut nearest = met.next()?;
-    let base = *height;
+    let base = waiting.len();
     for visit in met {
         let farther = visit.max(nearest);
         nearest = visit.min(nearest);
-        let mut place = *height;
+        let mut place = waiting.len();
+        waiting.push(farther);
         while place > base && waiting[place - 1] < farther {
             waiting[place] = waiting[place - 1];
             place -= 1;
         }
         waiting[place] = farther;
-        *height += 1;
     }
     Some(nearest)
 }

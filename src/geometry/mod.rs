@@ -6,11 +6,14 @@ pub mod bezier;
 pub mod bvh;
 pub mod camera;
 pub mod cube;
+pub mod face_ray;
 pub mod mesh;
 pub mod optics;
 pub mod polynomial;
 pub mod random;
+pub mod reflection_plane;
 pub mod shapes;
+pub mod texel_line;
 pub mod tree;
 pub mod wide_tree;
 

@@ -84,11 +84,6 @@ mod tests {
         assert!(first.iter().all(|n| (60..140).contains(n)), "{first:?}");
     }
 
-    /// Near enough to normal: the sum of four uniforms, variance 1/3, median 0.
-    fn noise(random: &mut SplitMix64) -> f64 {
-        (0..4).map(|_| random.next_u64() as f64 / u64::MAX as f64 - 0.5).sum()
-    }
-
     #[test]
     fn rotations_turn_an_axis_everywhere() {
         let mut random = SplitMix64::new(7);

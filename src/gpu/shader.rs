@@ -196,6 +196,7 @@ impl Shaders {
 /// pipeline is made.
 fn capabilities() -> Capabilities {
     Capabilities::PRIMITIVE_INDEX
+        | Capabilities::EARLY_DEPTH_TEST
         | Capabilities::IMMEDIATES
         | Capabilities::SHADER_FLOAT16_IN_FLOAT32
         | Capabilities::RAY_QUERY

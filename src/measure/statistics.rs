@@ -119,6 +119,11 @@ pub fn has_trend(values: &[f64]) -> bool {
 mod tests {
     use super::*;
 
+    /// Near enough to normal: the sum of four uniforms, variance 1/3, median 0.
+    fn noise(random: &mut SplitMix64) -> f64 {
+        (0..4).map(|_| random.next_u64() as f64 / u64::MAX as f64 - 0.5).sum()
+    }
+
     #[test]
     fn percentiles_of_a_ramp_are_linear() {
         let ramp: Vec<f64> = (0..=10).map(f64::from).collect();

@@ -9,11 +9,12 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 
+use super::params::STAGE;
 use super::{Changes, Family, Kind, MethodInfo, Param, ReflectionMethod, Setup, Want};
 use crate::error::Result;
-use crate::gpu::{ComputePipeline, Device, Frame, Sampler};
+use crate::gpu::{Device, Frame, Sampler};
 use crate::scene::ObjectId;
-use crate::stages::{Capture, CaptureStage, GpuScene, ReflectionRecord, View};
+use crate::stages::{Capture, CaptureStage, GpuScene, PixelPass, ReflectionRecord, View};
 
 pub const INFO: MethodInfo = MethodInfo {
     id: "environment-map",
@@ -39,6 +40,7 @@ pub const INFO: MethodInfo = MethodInfo {
             needs: None,
             doc: "look up by the mirrored direction B, or by the reflector point W (Patow fig. 2)",
         },
+        STAGE,
     ],
     limits: "no parallax: exact only for a scene infinitely far away; no self-reflection",
     passes: &[
@@ -63,22 +65,21 @@ pub struct Params {
 struct EnvironmentMap {
     device: Arc<Device>,
     stage: CaptureStage,
-    reflect: ComputePipeline,
+    reflect: PixelPass,
     size: u32,
     /// The reflectors of each group, and the map they share.
     maps: Vec<(Vec<ObjectId>, Capture)>,
 }
 
 fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
-    let mut defines = setup.mode.defines();
+    let mut defines = Vec::new();
     if setup.values.is("index", "surface") {
         defines.push(("INDEX_SURFACE", 1));
     }
-    let file = "environment_map/reflect.wgsl";
     Ok(Box::new(EnvironmentMap {
         device: setup.device.clone(),
         stage: CaptureStage::new(setup.device)?,
-        reflect: ComputePipeline::new(setup.device, file, &defines)?,
+        reflect: setup.pixel_pass("environment_map/reflect.wgsl", &defines)?,
         size: setup.values.u32("size"),
         maps: Vec::new(),
     }))
@@ -109,20 +110,18 @@ impl ReflectionMethod for EnvironmentMap {
         record: &mut ReflectionRecord,
     ) -> Result<()> {
         for (objects, map) in &self.maps {
-            view.list_pixels(frame, scene, objects)?;
             let params = Params { centre: map.centre.to_array(), size: map.size };
-            let pass = frame.pass("environment-map/reflect").compute(&self.reflect);
-            record
-                .bind(view.bind(scene.bind(pass)))
-                .uniform("params", &params)
-                .optional()
-                .sample("capture_radiance", &map.radiance)
-                .sample("capture_point", &map.point)
-                .optional()
-                .sample("capture_ids", &map.ids)
-                .optional()
-                .sampler("linear_filter", Sampler::Linear)
-                .indirect(&view.footprint.pixels)?;
+            let name = "environment-map/reflect";
+            self.reflect.run(frame, name, (scene, view), record, objects, |pass| {
+                pass.uniform("params", &params)
+                    .optional()
+                    .sample("capture_radiance", &map.radiance)
+                    .sample("capture_point", &map.point)
+                    .optional()
+                    .sample("capture_ids", &map.ids)
+                    .optional()
+                    .sampler("linear_filter", Sampler::Linear)
+            })?;
         }
         Ok(())
     }

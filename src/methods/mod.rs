@@ -4,12 +4,14 @@
 //! `tests/methods_vs_truth.rs` and its figures.
 
 pub mod case;
+mod distance_impostor;
 mod environment_map;
 pub mod nearest;
 mod none;
 pub mod params;
 mod planar_mirror;
 mod ray_traced;
+mod screen_space;
 mod truth;
 mod z_buffered_map;
 
@@ -21,9 +23,9 @@ pub use case::{Case, Selected};
 pub use params::{Kind, Param, Values};
 
 use crate::error::Result;
-use crate::gpu::{Device, Frame};
+use crate::gpu::{Defines, Device, Frame};
 use crate::scene::ObjectId;
-use crate::stages::{GpuScene, RecordMode, ReflectionRecord, View};
+use crate::stages::{GpuScene, PixelPass, PixelStage, RecordMode, ReflectionRecord, View};
 
 /// One paper's answer to "which scene point does this mirror pixel show?"
 pub trait ReflectionMethod {
@@ -99,6 +101,18 @@ pub struct Setup<'a> {
     pub reflectors: &'a [ObjectId],
 }
 
+impl Setup<'_> {
+    /// A shader over the reflectors' pixels, in the form that the parameter [`params::STAGE`] asks for.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Shader`] where it does not compile.
+    pub fn pixel_pass(&self, file: &str, defines: Defines) -> Result<PixelPass> {
+        let fragment = self.values.is(params::STAGE.name, "fragment");
+        let stage = if fragment { PixelStage::Fragment } else { PixelStage::Compute };
+        PixelPass::new(self.device, file, defines, self.mode, stage)
+    }
+}
+
 /// Makes a method for a case.
 pub type Make = fn(&Setup) -> Result<Box<dyn ReflectionMethod>>;
 
@@ -134,6 +148,8 @@ pub static METHODS: &[MethodInfo] = &[
     none::INFO,
     ray_traced::INFO,
     environment_map::INFO,
-    z_buffered_map::INFO,
     planar_mirror::INFO,
+    z_buffered_map::INFO,
+    distance_impostor::INFO,
+    screen_space::INFO,
 ];

@@ -15,6 +15,16 @@ pub struct Param {
     pub doc: &'static str,
 }
 
+/// Where a method of image space answers its pixels, see [`crate::stages::PixelPass`].
+pub const STAGE: Param = Param {
+    name: "stage",
+    kind: Kind::Choice(&["compute", "fragment"]),
+    defaults: &["compute"],
+    needs: None,
+    doc: "where pixels are answered: a compute shader over their list, or a fragment shader through \
+          the stencil",
+};
+
 /// What values a parameter takes; bounds are inclusive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {

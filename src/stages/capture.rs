@@ -23,9 +23,9 @@ const FORMATS: [Format; 3] = [Format::Rgba16Float, Format::Rgba32Float, Format::
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub struct CubeUniform {
-    clip_from_world: [[[f32; 4]; 4]; 6],
-    centre: [f32; 3],
-    near: f32,
+    pub(super) clip_from_world: [[[f32; 4]; 4]; 6],
+    pub(super) centre: [f32; 3],
+    pub(super) near: f32,
 }
 
 impl CubeUniform {

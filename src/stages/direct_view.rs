@@ -1,8 +1,9 @@
-//! The direct view: every surface's own shade, its depth and its object, reflections left out.
+//! The direct view: every surface's own shade, its depth and its object, reflections left out; with
+//! full records also its triangle.
 
 use std::sync::Arc;
 
-use super::{CameraUniform, GpuScene};
+use super::{CameraUniform, GpuScene, RecordMode};
 use crate::error::Result;
 use crate::gpu::{
     Attachments, Depth, Device, Format, Frame, GraphicsPipeline, Image, Load, Shape, Stencil,
@@ -19,12 +20,15 @@ pub struct DirectView {
     pub depth: Image,
     /// Object seen; [`NO_OBJECT`] where none is.
     pub object: Image,
+    /// Triangle seen of the object's mesh; only with full records.
+    pub triangle: Option<Image>,
 }
 
 impl DirectView {
-    pub fn new(device: &Arc<Device>, size: [u32; 2]) -> Result<DirectView> {
+    pub fn new(device: &Arc<Device>, size: [u32; 2], mode: RecordMode) -> Result<DirectView> {
         let image = |name: &str, format| Image::new(device, name, format, size, Shape::Flat);
-        let colours = [Format::Rgba16Float, Format::R32Float, Format::R32Uint];
+        let colours = [Format::Rgba16Float, Format::R32Float, Format::R32Uint, Format::R32Uint];
+        let full = mode == RecordMode::Full;
         let background = Attachments {
             colours: &colours[..1],
             depth_stencil: false,
@@ -32,17 +36,23 @@ impl DirectView {
             stencil: Stencil::Off,
         };
         let surfaces = Attachments {
-            colours: &colours,
+            colours: if full { &colours } else { &colours[..3] },
             depth_stencil: true,
             depth: Depth::Nearest,
             ..background
         };
         Ok(DirectView {
             background: GraphicsPipeline::new(device, "stages/background.wgsl", &[], &background)?,
-            surfaces: GraphicsPipeline::new(device, "stages/direct_view.wgsl", &[], &surfaces)?,
+            surfaces: GraphicsPipeline::new(
+                device,
+                "stages/direct_view.wgsl",
+                &mode.defines(),
+                &surfaces,
+            )?,
             colour: image("direct colour", colours[0])?,
             depth: image("direct depth", colours[1])?,
             object: image("direct object", colours[2])?,
+            triangle: full.then(|| image("direct triangle", colours[3])).transpose()?,
         })
     }
 
@@ -61,13 +71,16 @@ impl DirectView {
             .colour("colour", &self.colour, Load::Clear([0.0; 4]))
             .draw(|draw| draw.vertices(3))?;
         let pass = frame.pass("direct-view/surfaces").graphics(&self.surfaces);
-        scene
+        let mut pass = scene
             .bind(pass)
             .uniform("camera", camera)
             .colour("colour", &self.colour, Load::Keep)
             .colour("depth", &self.depth, Load::Clear([f32::INFINITY; 4]))
-            .colour("object", &self.object, Load::ClearWords([NO_OBJECT; 4]))
-            .depth_stencil(depth_stencil, Load::Clear([0.0; 4]), Load::ClearWords([0; 4]))
+            .colour("object", &self.object, Load::ClearWords([NO_OBJECT; 4]));
+        if let Some(triangle) = &self.triangle {
+            pass = pass.colour("triangle", triangle, Load::ClearWords([0; 4]));
+        }
+        pass.depth_stencil(depth_stencil, Load::Clear([0.0; 4]), Load::ClearWords([0; 4]))
             .draw(|draw| scene.draw(draw, |_| true))
     }
 }

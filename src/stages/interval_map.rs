@@ -10,7 +10,7 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-use super::{GpuScene, LayeredCapture, LayeredCaptureStage, RecordMode};
+use super::{GpuScene, LayeredCapture, LayeredCaptureStage, RecordMode, Sides};
 use crate::error::Result;
 use crate::gpu::{ComputePipeline, Device, Format, Frame, Image, Pass, Shape};
 use crate::scene::ObjectId;
@@ -110,7 +110,7 @@ impl IntervalStage {
         let edges = [("EDGES", 1)];
         let defines = if certificate == Certificate::Edges { &edges[..] } else { &[] };
         Ok(IntervalStage {
-            capture: LayeredCaptureStage::with_sides(device, mode, true)?,
+            capture: LayeredCaptureStage::new(device, mode, Sides::Marked)?,
             order: ComputePipeline::new(device, "stages/interval_order.wgsl", &[])?,
             bounds: ComputePipeline::new(device, "stages/interval_bounds.wgsl", defines)?,
             pyramid: ComputePipeline::new(device, "stages/interval_pyramid.wgsl", &[])?,

@@ -1,6 +1,6 @@
 //! What every method shares on the GPU: the scene, the direct view, the reflectors' footprint, the
-//! captured map with one layer or several, the tree for rays, the record, the fallback and the composite. Each is written here once, so two
-//! methods differ only in what they find.
+//! captured map with one layer or several, the tree for rays, the record, the fallback and the
+//! composite. Each is written here once, so two methods differ only in what they find.
 
 mod capture;
 mod composite;
@@ -9,6 +9,7 @@ mod fallback;
 mod footprint;
 mod interval_map;
 mod layered_capture;
+mod pixel_pass;
 mod record;
 mod scene;
 mod scene_structure;
@@ -20,8 +21,9 @@ pub use composite::Composite;
 pub use direct_view::DirectView;
 pub use fallback::{FallbackStage, Filling};
 pub use footprint::Footprint;
-pub use interval_map::{Certificate, IntervalMap, IntervalStage};
-pub use layered_capture::{LayeredCapture, LayeredCaptureStage};
+pub use interval_map::{Certificate, IntervalMap, IntervalStage, MOST_INTERVALS};
+pub use layered_capture::{LayeredCapture, LayeredCaptureStage, Sides};
+pub use pixel_pass::{PixelPass, PixelStage};
 pub use record::{RecordMode, ReflectionRecord};
 pub use scene::GpuScene;
 pub use scene_structure::SceneStructure;

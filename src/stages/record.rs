@@ -110,7 +110,9 @@ impl ReflectionRecord {
             Some(e) => pass
                 .colour("record_point", &e.point, Load::Keep)
                 .colour("record_last", &e.last, Load::Keep)
-                .colour("record_ids", &e.ids, Load::Keep),
+                .colour("record_ids", &e.ids, Load::Keep)
+                .buffer("counters", &e.counters)
+                .optional(),
         }
     }
 

@@ -95,9 +95,13 @@ impl<'a> View<'a> {
         scene: &super::GpuScene,
         reflectors: &[ObjectId],
     ) -> Result<()> {
+        self.footprint.list_pixels(frame, scene, &self.asked(reflectors))
+    }
+
+    /// Those of these reflectors that the view asks for.
+    pub fn asked(&self, reflectors: &[ObjectId]) -> Vec<ObjectId> {
         let asked = reflectors.iter().filter(|object| self.reflectors.contains(object));
-        let asked: Vec<_> = asked.copied().collect();
-        self.footprint.list_pixels(frame, scene, &asked)
+        asked.copied().collect()
     }
 }
 

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::scene::{FrameRecord, Ids, ReflectionRecord};
 
 /// Raised whenever the tracer, the shading or the file's layout changes what a frame holds.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 const MAGIC: [u8; 8] = *b"mbtruth\n";
 

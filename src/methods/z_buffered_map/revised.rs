@@ -11,12 +11,14 @@
 
 use std::sync::Arc;
 
-use crate::error::{Error, Result};
-use crate::gpu::{ComputePipeline, Device, Frame};
-use crate::methods::{ReflectionMethod, Setup, Want};
+use super::super::{ReflectionMethod, Setup, Want};
+use super::refuse;
+use crate::error::Result;
+use crate::gpu::{Device, Frame};
 use crate::scene::ObjectId;
 use crate::stages::{
-    Certificate, GpuScene, IntervalMap, IntervalStage, RecordMode, ReflectionRecord, View,
+    Certificate, GpuScene, IntervalMap, IntervalStage, MOST_INTERVALS, PixelPass, RecordMode,
+    ReflectionRecord, View,
 };
 
 /// Texels along a face's side and intervals a texel, where `auto` leaves them to us.
@@ -27,38 +29,41 @@ struct Revised {
     device: Arc<Device>,
     mode: RecordMode,
     stage: IntervalStage,
-    reflect: ComputePipeline,
+    reflect: PixelPass,
     size: u32,
     layers: u32,
     /// The reflectors of each group, and the map they share.
     maps: Vec<(Vec<ObjectId>, IntervalMap)>,
 }
 
-pub fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
-    let mut defines = setup.mode.defines();
-    if setup.values.is("search", "scan") {
+pub(super) fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
+    let values = setup.values;
+    let size = values.forced_u32("size").unwrap_or(AUTO_SIZE);
+    if !size.is_power_of_two() {
+        return refuse(setup, format!("size={size}; valid: a power of two"));
+    }
+    let layers = values.forced_u32("layers").unwrap_or(AUTO_LAYERS);
+    if layers > MOST_INTERVALS {
+        return refuse(setup, format!("layers={layers}; valid: 1 to {MOST_INTERVALS}"));
+    }
+    let mut defines = Vec::new();
+    if values.is("search", "scan") {
         defines.push(("SCAN", 1));
     }
-    if setup.values.is("refine", "on") {
+    if values.is("refine", "on") {
         defines.push(("REFINE", 1));
     }
-    let certificate = match setup.values.get("certificate") {
+    let certificate = match values.get("certificate") {
         "intervals" => Certificate::Intervals,
         _ => Certificate::Edges,
     };
-    let size = setup.values.forced_u32("size").unwrap_or(AUTO_SIZE);
-    if !size.is_power_of_two() {
-        let message = format!("z-buffered-map@revised: size={size}; valid: a power of two");
-        return Err(Error::Usage(message));
-    }
-    let file = "z_buffered_map/revised.wgsl";
     Ok(Box::new(Revised {
         device: setup.device.clone(),
         mode: setup.mode,
         stage: IntervalStage::new(setup.device, setup.mode, certificate)?,
-        reflect: ComputePipeline::new(setup.device, file, &defines)?,
+        reflect: setup.pixel_pass("z_buffered_map/revised.wgsl", &defines)?,
         size,
-        layers: setup.values.forced_u32("layers").unwrap_or(AUTO_LAYERS),
+        layers,
         maps: Vec::new(),
     }))
 }
@@ -88,10 +93,8 @@ impl ReflectionMethod for Revised {
         record: &mut ReflectionRecord,
     ) -> Result<()> {
         for (objects, map) in &self.maps {
-            view.list_pixels(frame, scene, objects)?;
-            let pass = frame.pass("z-buffered-map/reflect").compute(&self.reflect);
-            let pass = record.bind(view.bind(scene.bind(pass)));
-            map.bind(pass).indirect(&view.footprint.pixels)?;
+            let name = "z-buffered-map/reflect";
+            self.reflect.run(frame, name, (scene, view), record, objects, |pass| map.bind(pass))?;
         }
         Ok(())
     }
