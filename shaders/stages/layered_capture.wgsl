@@ -2,6 +2,9 @@ enable primitive_index;
 // One layer of surfaces into the six faces of a cube: of what lies behind the layer before, the
 // nearest. Every layer is drawn by this one shader, so depths of the same surface are equal to the
 // last bit and comparing them is exact.
+#ifdef MARK_SIDES
+#import bindings::scene::objects
+#endif
 #import bindings::surface::{Surface, surface_colour, surface_vertex}
 
 struct Cube {
@@ -66,7 +69,13 @@ fn fragment(
     }
 #endif
     var out: Texel;
-    let packed = pack2x16float(clamp(gradient, vec2(-LARGEST_HALF), vec2(LARGEST_HALF)));
+    var packed = pack2x16float(clamp(gradient, vec2(-LARGEST_HALF), vec2(LARGEST_HALF)));
+#ifdef MARK_SIDES
+    // The lowest bits of the two halves say that it is a back, and that its object has no inside; see
+    // bindings/interval_map.wgsl. Objects with an inside are those selected.
+    let closed = objects[in.object].selected == 1u;
+    packed = (packed & 0xfffefffeu) | select(0u, 1u, turned) | select(0x10000u, 0u, closed);
+#endif
     out.surface = vec4(bitcast<u32>(depth / cube.near), packed, 0u, 0u);
     out.radiance = vec4(surface_colour(in, in.position - cube.centre), 1.0);
 #ifdef RECORD_FULL

@@ -1,5 +1,7 @@
 //! Triangle meshes.
 
+use std::collections::HashMap;
+
 use glam::{Vec2, Vec3};
 
 /// An indexed triangle mesh with one normal and one texture coordinate a vertex.
@@ -29,6 +31,23 @@ impl Mesh {
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let (&first, rest) = self.positions.split_first()?;
         Some(rest.iter().fold((first, first), |(low, high), &p| (low.min(p), high.max(p))))
+    }
+
+    /// Whether it has an inside: every edge borders as many triangles in one direction as in the
+    /// other, vertices of equal position taken as one.
+    pub fn is_closed(&self) -> bool {
+        // Adding zero makes one zero of both.
+        let place =
+            |vertex: u32| (self.positions[vertex as usize] + 0.0).to_array().map(f32::to_bits);
+        let mut surplus: HashMap<_, i32> = HashMap::new();
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.map(place);
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                let (edge, turn) = if from < to { ((from, to), 1) } else { ((to, from), -1) };
+                *surplus.entry(edge).or_default() += turn;
+            }
+        }
+        !self.triangles.is_empty() && surplus.values().all(|&turns| turns == 0)
     }
 
     /// The mesh enlarged about the origin. `factor` is positive, so normals stay.
@@ -104,4 +123,29 @@ pub(crate) fn is_flat(a: Vec3, b: Vec3, c: Vec3) -> bool {
     let longest =
         (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
     (b - a).cross(c - a).length() <= 4.0 * f32::EPSILON * longest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::shapes::{Sweep, cuboid, cylinder, plane, sphere, torus};
+
+    #[test]
+    fn what_has_an_inside_is_closed() {
+        let ring = |angle| torus(1.0, 0.3, 8, Sweep { slices: 12, angle });
+        for closed in [
+            sphere(1.0, 12, 6),
+            cylinder(0.5, 2.0, true, 7),
+            cuboid(Vec3::ONE),
+            ring(std::f32::consts::TAU),
+        ] {
+            assert!(closed.is_closed());
+        }
+        for open in [plane(Vec2::ONE), cylinder(0.5, 2.0, false, 7), ring(2.0), Mesh::default()] {
+            assert!(!open.is_closed());
+        }
+        let mut turned = sphere(1.0, 12, 6);
+        turned.triangles[3].swap(0, 1);
+        assert!(!turned.is_closed(), "a triangle that faces the other way");
+    }
 }

@@ -183,6 +183,8 @@ pub enum Depth {
     Nearest,
     /// Pass where the fragment is what the buffer already shows, or nearer; keep the nearest.
     NearestOrEqual,
+    /// Keep the farthest.
+    Farthest,
 }
 
 /// The stencil test. The reference is set while drawing.
@@ -301,6 +303,7 @@ fn depth_stencil_state(
         Depth::Off => (false, vk::CompareOp::ALWAYS),
         Depth::Nearest => (true, vk::CompareOp::GREATER),
         Depth::NearestOrEqual => (true, vk::CompareOp::GREATER_OR_EQUAL),
+        Depth::Farthest => (true, vk::CompareOp::LESS),
     };
     let (stencil, compare_stencil, pass) = match attachments.stencil {
         Stencil::Off => (false, vk::CompareOp::ALWAYS, vk::StencilOp::KEEP),

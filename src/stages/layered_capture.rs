@@ -27,6 +27,9 @@ pub enum Sides {
     Both,
     /// Those alone whose front is towards the centre: what a renderer that culls back faces keeps.
     Facing,
+    /// Both, marked as `shaders/bindings/interval_map.wgsl` reads it: which are backs, and which belong
+    /// to objects without an inside. The last layer holds the farthest surface.
+    Marked,
 }
 
 /// Surface, radiance, ids, and the depth the next layer is peeled from.
@@ -117,6 +120,8 @@ impl LayeredCapture {
 pub struct LayeredCaptureStage {
     background: GraphicsPipeline,
     surfaces: GraphicsPipeline,
+    /// Fills the last layer where sides are marked.
+    farthest: Option<GraphicsPipeline>,
 }
 
 impl LayeredCaptureStage {
@@ -138,13 +143,18 @@ impl LayeredCaptureStage {
         let surfaces =
             Attachments { colours, depth_stencil: true, depth: Depth::Nearest, ..background };
         let mut defines = mode.defines();
-        if sides == Sides::Facing {
-            defines.push(("FACING_ONLY", 1));
+        match sides {
+            Sides::Both => {}
+            Sides::Facing => defines.push(("FACING_ONLY", 1)),
+            Sides::Marked => defines.push(("MARK_SIDES", 1)),
         }
         let pipeline = |file, a| GraphicsPipeline::new(device, file, &defines, a);
+        let file = "stages/layered_capture.wgsl";
+        let farthest = Attachments { depth: Depth::Farthest, ..surfaces };
         Ok(LayeredCaptureStage {
             background: pipeline("stages/layered_background.wgsl", &background)?,
-            surfaces: pipeline("stages/layered_capture.wgsl", &surfaces)?,
+            surfaces: pipeline(file, &surfaces)?,
+            farthest: (sides == Sides::Marked).then(|| pipeline(file, &farthest)).transpose()?,
         })
     }
 
@@ -164,24 +174,33 @@ impl LayeredCaptureStage {
         let pass = frame.pass(&format!("{name}/capture-background")).graphics(&self.background);
         attach(scene.bind(pass), target, 0)
             .draw_layers(6 * target.layers, |draw| draw.vertices(3))?;
-        // Nothing is nearer than the first layer.
-        let infinite = Load::Clear([f32::INFINITY; 4]);
-        frame.pass(&format!("{name}/capture-start")).clear(&[(
-            "depth_before",
-            &target.peel[1],
-            infinite,
-        )])?;
         let uniform = CubeUniform::new(centre);
-        let empty = Load::Clear([0.0; 4]);
+        let objects = match &self.farthest {
+            None => None,
+            Some(_) => Some(scene.selection(frame, &scene.closed())?),
+        };
         for layer in 0..target.layers {
             let [own, before] = [layer % 2, (layer + 1) % 2].map(|i| &target.peel[i as usize]);
-            let pass = frame.pass(&format!("{name}/capture")).graphics(&self.surfaces);
-            attach(scene.bind(pass), target, 6 * layer)
+            let farthest = self.farthest.as_ref().filter(|_| layer + 1 == target.layers);
+            let (pipeline, start) = match farthest {
+                None => (&self.surfaces, 0.0),
+                Some(farthest) => (farthest, 1.0),
+            };
+            if layer == 0 || farthest.is_some() {
+                // Nothing is nearer than the first layer, and the farthest is behind nothing.
+                let start = frame.pass(&format!("{name}/capture-start"));
+                start.clear(&[("depth_before", before, Load::Clear([f32::INFINITY; 4]))])?;
+            }
+            let pass = frame.pass(&format!("{name}/capture")).graphics(pipeline);
+            let mut pass = attach(scene.bind(pass), target, 6 * layer)
                 .uniform("cube", &uniform)
                 .sample("depth_before", before)
-                .colour("depth", own, empty)
-                .depth_stencil(&target.depth, empty, Load::ClearWords([0; 4]))
-                .draw_layers(6, |draw| scene.draw(draw, |object| !exclude.contains(&object)))?;
+                .colour("depth", own, Load::Clear([0.0; 4]))
+                .depth_stencil(&target.depth, Load::Clear([start; 4]), Load::ClearWords([0; 4]));
+            if let Some(objects) = objects {
+                pass = pass.slice("objects", objects);
+            }
+            pass.draw_layers(6, |draw| scene.draw(draw, |object| !exclude.contains(&object)))?;
         }
         Ok(())
     }

@@ -7,6 +7,7 @@ use glam::{Affine3A, Vec3};
 use half::f16;
 
 use crate::error::Result;
+use crate::geometry::Mesh;
 use crate::gpu::{Buffer, Device, Draw, Frame, MeshTriangles, Pass, Slice};
 use crate::scene::{Environment, Material, Moment, ObjectId, Pattern, Scene};
 
@@ -87,6 +88,8 @@ pub struct GpuScene {
     light: LightUniform,
     /// First index and index count of each mesh.
     ranges: Vec<(u32, u32)>,
+    /// Whether each mesh has an inside.
+    closed: Vec<bool>,
     moment: Moment,
     /// This frame's poses, uploaded by [`GpuScene::pose`].
     objects: Option<Slice>,
@@ -122,6 +125,7 @@ impl GpuScene {
             texels: Buffer::with_data(device, "scene texels", &texels)?,
             light: light_uniform(scene),
             ranges,
+            closed: scene.meshes.iter().map(Mesh::is_closed).collect(),
             moment: scene.at(0),
             objects: None,
             scene: scene.clone(),
@@ -165,6 +169,13 @@ impl GpuScene {
             })
             .collect();
         frame.upload(&entries)
+    }
+
+    /// The objects that have an inside.
+    pub fn closed(&self) -> Vec<ObjectId> {
+        (0..self.scene.objects.len() as ObjectId)
+            .filter(|&object| self.closed[self.scene.objects[object as usize].mesh])
+            .collect()
     }
 
     /// Bind what a shader wants of the scene.

@@ -33,6 +33,10 @@ use crate::stages::{
     View,
 };
 
+/// What his section 5 has, where `auto` leaves it to us.
+const SIZE: u32 = 300;
+const LAYERS: u32 = 2;
+
 /// WGSL `Params` of `shaders/z_buffered_map/published.wgsl`.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -58,7 +62,7 @@ struct Published {
 
 pub(super) fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     let values = setup.values;
-    let layers = values.u32("layers");
+    let layers = values.forced_u32("layers").unwrap_or(LAYERS);
     let mut defines = vec![("LAYERS", layers)];
     match values.get("search") {
         "vector" => defines.push(("SEARCH_VECTOR", 1)),
@@ -80,7 +84,7 @@ pub(super) fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
             pad: 0,
         },
         mode: setup.mode,
-        size: values.u32("size"),
+        size: values.forced_u32("size").unwrap_or(SIZE),
         layers,
         one_map: values.is("map", "scene"),
         maps: Vec::new(),
