@@ -24,10 +24,8 @@ impl Segment {
         let rises = [steep.x > 0.0, steep.y > 0.0];
         let (down, up) = (self.begin.floor(), self.begin.ceil() - 1.0);
         // A ray that crosses two borders at once crosses the vertical one first.
-        let first = Vec2::new(
-            if rises[0] { down.x } else { up.x },
-            if rises[1] { up.y } else { down.y },
-        );
+        let first =
+            Vec2::new(if rises[0] { down.x } else { up.x }, if rises[1] { up.y } else { down.y });
         let last = IVec2::splat(size as i32 - 1);
         let mut texel = first.as_ivec2().clamp(IVec2::ZERO, last);
         let (mut texels, mut at) = (Vec::new(), 0.0f32);
