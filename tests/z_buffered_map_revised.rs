@@ -64,7 +64,7 @@ fn doubts(tested: &FrameRecord, maps: &Maps) -> [usize; 3] {
 fn what_is_wrong_carries_a_flag() {
     let session = Session::open();
     let mut sum = [0; 3];
-    for name in ["columns", "patow-room", "clutter-60", "clutter-150", "sticks", "teapot"] {
+    for name in ["columns", "patow-room", "clutter-60", "clutter-150", "sticks"] {
         let scene = scene::load(name).unwrap();
         let (tested, _, maps) = judged(&session, &scene, CASE, SIZE, 0);
         let counts = doubts(&tested, &maps);
@@ -249,12 +249,14 @@ fn a_map_taken_beside_the_mirror_serves_too() {
     let mut grouped = scene.clone();
     let mut second = grouped.objects[0].clone();
     second.name = "ball.second".to_owned();
+    // Too small to be seen in the first.
+    second.mesh = grouped.meshes.len();
+    second.surface = None;
+    grouped.meshes.push(scene.meshes[scene.objects[0].mesh].clone().scaled(0.02));
     second.motion = Motion::Still(Affine3A::from_translation(Vec3::new(2.4, 0.0, -1.0)));
     grouped.objects.push(second);
     let (accuracy, traced) = certified(&session, &grouped, CASE, SIZE);
-    // Neither part sees the other: what the map left out is wrong, and the truth's second bounce.
-    let seen_twice = accuracy.wrong_object;
-    assert!(accuracy.bad_share.one - seen_twice <= 0.01, "{accuracy:?}");
+    assert!(accuracy.bad_share.one <= 0.005, "{accuracy:?}");
     assert!(traced < 0.2, "{traced} traced");
 }
 

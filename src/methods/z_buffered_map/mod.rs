@@ -3,6 +3,7 @@
 
 mod published;
 mod revised;
+mod sizing;
 
 use super::params::STAGE;
 use super::{Changes, Family, Kind, MethodInfo, Param, ReflectionMethod, Setup};

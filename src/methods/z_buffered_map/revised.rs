@@ -12,7 +12,7 @@
 use std::sync::Arc;
 
 use super::super::{ReflectionMethod, Setup, Want};
-use super::refuse;
+use super::{refuse, sizing};
 use crate::error::Result;
 use crate::gpu::{Device, Frame};
 use crate::scene::ObjectId;
@@ -20,10 +20,6 @@ use crate::stages::{
     Certificate, GpuScene, IntervalMap, IntervalStage, MOST_INTERVALS, PixelPass, RecordMode,
     ReflectionRecord, View,
 };
-
-/// Texels along a face's side and intervals a texel, where `auto` leaves them to us.
-const AUTO_SIZE: u32 = 512;
-const AUTO_LAYERS: u32 = 2;
 
 struct Revised {
     device: Arc<Device>,
@@ -38,11 +34,22 @@ struct Revised {
 
 pub(super) fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     let values = setup.values;
-    let size = values.forced_u32("size").unwrap_or(AUTO_SIZE);
+    let (scene, reflectors) = (&setup.scene.scene, setup.reflectors);
+    let size = values
+        .forced_u32("size")
+        .unwrap_or_else(|| sizing::texels(scene, reflectors, setup.size[1]));
     if !size.is_power_of_two() {
         return refuse(setup, format!("size={size}; valid: a power of two"));
     }
-    let layers = values.forced_u32("layers").unwrap_or(AUTO_LAYERS);
+    let layers = values.forced_u32("layers").unwrap_or_else(|| {
+        let moment = scene.at(0);
+        let groups = scene.groups(reflectors);
+        let needed = groups.iter().map(|(_, objects)| {
+            let (low, high) = scene.bounds_of(&moment, objects);
+            sizing::intervals(scene, &moment, 0.5 * (low + high), objects, MOST_INTERVALS)
+        });
+        needed.max().unwrap_or(1)
+    });
     if layers > MOST_INTERVALS {
         return refuse(setup, format!("layers={layers}; valid: 1 to {MOST_INTERVALS}"));
     }
