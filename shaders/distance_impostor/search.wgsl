@@ -163,7 +163,8 @@ fn after(sweep: Sweep, share: f32) -> f32 {
 // A ray can also get behind a surface past its edge. There the map does not know what it meets, so the
 // march goes on: the ray may come out again. For one that does not, what was beside the edge is taken
 // to go on behind it: the texel there is shown, or the sky. (Taking it to have hit the side of what it
-// is behind shows the wrong object two to ten times as often in most scenes.)
+// is behind shows the wrong object three to twelve times as often in `columns`, `lecture`, `patow-room`
+// and `clutter-150`.)
 fn bracketed(x: vec3<f32>, r: vec3<f32>) -> Met {
     let reach = length(x);
     if reach == 0.0 {
