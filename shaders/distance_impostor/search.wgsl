@@ -161,8 +161,10 @@ fn after(sweep: Sweep, share: f32) -> f32 {
 // (its Illinois form, which moves both ends).
 //
 // A ray can also get behind a surface past its edge. There the map does not know what it meets, so the
-// march goes on: the ray may come out again. One that does not is taken to have hit the side of
-// what it is behind, unless the sky is beside that.
+// march goes on: the ray may come out again. For one that does not, what was beside the edge is taken
+// to go on behind it: the texel there is shown, or the sky. (Taking it to have hit the side of what it
+// is behind shows the wrong object three to twelve times as often in `columns`, `lecture`, `patow-room`
+// and `clutter-150`.)
 fn bracketed(x: vec3<f32>, r: vec3<f32>) -> Met {
     let reach = length(x);
     if reach == 0.0 {
@@ -195,10 +197,11 @@ fn bracketed(x: vec3<f32>, r: vec3<f32>) -> Met {
 }
 
 struct Crossing {
+    // Where it is; past an edge, the last place in front of it.
     s: f32,
     // The ray passes through the surface here, not past its edge.
     on_surface: bool,
-    // Where it is still in front, there is the environment.
+    // Past an edge, and the environment is beside it.
     beside_sky: bool,
 }
 
@@ -224,5 +227,5 @@ fn refined(sweep: Sweep, in_front: vec2<f32>, behind: vec2<f32>) -> Crossing {
     }
     let beside_sky = nearness(towards(sweep, low.x)) == 0.0;
     let on_surface = abs(shown.y) <= OFF_THE_RAY * (1.0 - shown.x);
-    return Crossing(select(high.x, shown.x, on_surface), on_surface, beside_sky);
+    return Crossing(select(low.x, shown.x, on_surface), on_surface, beside_sky);
 }
