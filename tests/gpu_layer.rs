@@ -38,7 +38,7 @@ fn a_uniform_of_another_size_is_refused() {
     frame.begin().unwrap();
     let pass = frame.pass("test/uniform").compute(&reflect).uniform("params", &[0.0f32; 3]);
     let error = pass.over(1).unwrap_err().to_string();
-    assert!(error.contains("12 bytes in Rust and 16 in WGSL"), "{error}");
+    assert!(error.contains("12 bytes in Rust and 48 in WGSL"), "{error}");
 }
 
 #[test]
