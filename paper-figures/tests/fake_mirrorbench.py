@@ -90,9 +90,11 @@ def draw(case: str, width: int, height: int, frame: int) -> dict[str, np.ndarray
         layers[f"shown.{axis}"] = np.where(mirror, shown_point[..., i], 0)
         layers[f"normal.{axis}"] = normal[..., i]
         layers[f"position.{axis}"] = np.where(mirror, position[..., i], 0)
+        layers[f"refracted.{axis}"] = layers[f"shown.{axis}"]
     layers = {name: np.ascontiguousarray(a, np.float32) for name, a in layers.items()}
     status = np.where(shown == NO_OBJECT, 2, 1)
     ids = {"shown.object": shown, "shown.order": 1, "shown.status": status, "reflector.id": MIRROR}
+    ids["refracted.object"] = shown
     for name, value in ids.items():
         off = 0 if name in ("shown.order", "shown.status") else NO_OBJECT
         layers[name] = np.where(mirror, value, off).astype(np.uint32)
@@ -126,6 +128,19 @@ def depths(size: int) -> dict[str, np.ndarray]:
     return layers
 
 
+def ball(size: int) -> dict[str, dict[str, np.ndarray]]:
+    """The images of a sphere map, by name."""
+    s, t = np.meshgrid(*((np.arange(size) + 0.5) / size * 2 - 1,) * 2)
+    z = np.sqrt(np.maximum(1 - s * s - t * t, 0))
+    rays = np.stack([2 * z * s, -2 * z * t, 2 * z * z - 1], -1)
+    obj, _, colour = trace(np.broadcast_to(CENTRE, rays.shape), rays)
+    layers = {"map_ids": {"R": obj}}
+    for name, image in (("map_radiance", colour), ("map_point", rays)):
+        image = np.ascontiguousarray(np.moveaxis(image, -1, 0), np.float32)
+        layers[name] = dict(zip("RGB", image, strict=True))
+    return layers
+
+
 def save(path: Path, layers: dict[str, np.ndarray]) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
@@ -133,7 +148,7 @@ def save(path: Path, layers: dict[str, np.ndarray]) -> None:
 
 
 def row(scene: str, case: str, size: list[int], frame: int, timed: bool, baseline: str) -> dict:
-    names = ["column-{}", "object-{}"][scene == "lecture"]
+    names = "particle-{}" if "particles" in scene else ["column-{}", "object-{}"][scene == "lecture"]
     objects = [names.format(i + 1) for i in range(FLOOR)] + ["floor", "mirror"]
     if scene == "patow-room":
         objects[:2] = ["quad", "hidden-quad"]
@@ -214,6 +229,9 @@ def main() -> int:
     for case in args.case or []:
         if args.command == "render":
             save(args.out / f"frame-{args.frame:04}.exr", draw(case, *size, args.frame))
+            if args.dump == "environment-map/ball":
+                for name, layers in ball(64).items():
+                    save(args.out / "dump" / args.dump / f"{name}.exr", layers)
             if args.dump == "environment-map/capture":
                 save(args.out / "dump" / args.dump / "radiance.exr", cube(128))
             if args.dump == "z-buffered-map/capture":
