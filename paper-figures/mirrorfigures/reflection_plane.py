@@ -104,7 +104,7 @@ def _touched(b: np.ndarray, w: np.ndarray, size: int) -> tuple[np.ndarray, np.nd
     return tuple(cells[first].T)
 
 
-def draw(arc: Arc, labels: list[str]) -> plt.Figure:
+def draw_arc(arc: Arc, labels: list[str]) -> plt.Figure:
     """Left: the plane. Right: expression (2) along the arc. One colour a layer."""
     plot, (plane, chart) = plt.subplots(
         1, 2, figsize=(9.6, 4.4), layout="constrained", width_ratios=(1.15, 1)

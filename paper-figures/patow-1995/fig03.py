@@ -13,7 +13,7 @@ import numpy as np
 
 from mirrorfigures import main, render
 from mirrorfigures.evidence import object_ids
-from mirrorfigures.reflection_plane import arc_of, depth_layers, draw as draw_arc, middle_pixel
+from mirrorfigures.reflection_plane import arc_of, depth_layers, draw_arc, middle_pixel
 
 CENTRE = np.zeros(3)  # of patow-room's sphere
 
@@ -32,8 +32,8 @@ def draw(figure):
     figure.number("best_angle_deg", float(arc.angles[0, best]))
     figure.finding(
         f"Pixel {pixel[1]}, {pixel[0]}: of {arc.places.size} texels the best is off the ray by "
-        f"{arc.angles[0, best]:.2f} degrees, not by zero, as no texel's centre lies on the ray; its point "
-        f"is {1000 * np.linalg.norm(arc.s - arc.points[0, best]):.0f} mm from the true S."
+        f"{arc.angles[0, best]:.2f} degrees, not by zero, as no texel's centre lies on the ray; its "
+        f"point is {1000 * np.linalg.norm(arc.s - arc.points[0, best]):.0f} mm from the true S."
     )
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from mirrorfigures import main, render
 from mirrorfigures.evidence import object_ids
 from mirrorfigures.exr import FOUND
-from mirrorfigures.reflection_plane import arc_of, depth_layers, draw as draw_arc, middle_pixel
+from mirrorfigures.reflection_plane import arc_of, depth_layers, draw_arc, middle_pixel
 
 CENTRE = np.zeros(3)  # of patow-room's sphere
 

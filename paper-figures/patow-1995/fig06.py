@@ -18,7 +18,7 @@ def draw(figure):
     ours = render("patow-room", "z-buffered-map:layers=1", size="600x600")
     comparison(figure, truth, "z-buffered map, one layer", ours)
     missing = 100 * ours.row["accuracy"]["missing"]
-    figure.finding(f"{verdict(ours.row)} {missing:.2f} % show the background where a surface ought to be.")
+    figure.finding(f"{verdict(ours.row)} {missing:.2f} % show the background for a surface.")
 
 
 if __name__ == "__main__":

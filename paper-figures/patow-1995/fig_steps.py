@@ -17,48 +17,53 @@ from mirrorfigures.charts import COLOURS, GRID
 from mirrorfigures.figure import QUIET
 
 STEPS = (50, 100, 200, 500, 1000, 2000)
+METRES = "t alone, metres"
 SEARCHES = {
-    "t alone, metres": "search=vector",
+    METRES: "search=vector",
     "t alone, centimetres": "search=vector,unit_m=0.01",
     "t alone, kilometres": "search=vector,unit_m=1000",
     "t, then a line (his Fig. 7), metres": "search=hybrid",
 }
+COUNTERS = {"texels-again": "examined again", "texels-skipped": "never examined"}
 IMAGE = "z-buffered-map:search=image,line=touched"
 
 
 def draw(figure):
-    cases = {(label, n): f"z-buffered-map:{search},steps={n}" for label, search in SEARCHES.items() for n in STEPS}
+    cases = {
+        (label, steps): f"z-buffered-map:{search},steps={steps}"
+        for label, search in SEARCHES.items()
+        for steps in STEPS
+    }
     run = bench("patow-room", [*cases.values(), IMAGE], size="300x300", frames="0..1", repeat=1)
     figure.cite(run)
     *rows, image = run.rows
     rows = dict(zip(cases, rows, strict=True))
     plot, (errors, texels) = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained")
     plot.get_layout_engine().set(rect=(0, 0.04, 1, 0.96))
-    for (label, _), colour in zip(SEARCHES.items(), COLOURS, strict=False):
-        series = [rows[label, n] for n in STEPS]
-        errors.plot(STEPS, [100 * row["accuracy"]["bad_share"]["1"] for row in series], "o-", color=colour, label=label)
-        if "alone, metres" in label:
-            for counter, style in (("texels-again", "o-"), ("texels-skipped", "s--")):
-                name = {"texels-again": "examined again", "texels-skipped": "never examined"}[counter]
-                texels.plot(STEPS, [each(row, counter) for row in series], style, color=colour, label=name)
-    errors.axhline(100 * image["accuracy"]["bad_share"]["1"], color=QUIET, lw=1, ls=":", label="lines on all faces")
-    texels.axhline(each(image, "texels"), color=QUIET, lw=1, ls=":", label="texels the arc touches")
-    errors.set(xscale="log", yscale="log", xlabel="steps from t = 0 to 1", ylabel="bad at 1 px, % of mirror pixels")
-    texels.set(xscale="log", yscale="log", xlabel="steps from t = 0 to 1", ylabel="texels a mirror pixel (t alone, metres)")
+    for label, colour in zip(SEARCHES, COLOURS, strict=False):
+        series = [100 * bad_share(rows[label, steps]) for steps in STEPS]
+        errors.plot(STEPS, series, "o-", color=colour, label=label)
+    errors.axhline(100 * bad_share(image), color=QUIET, lw=1, ls=":", label="lines on all faces")
+    for (counter, label), style in zip(COUNTERS.items(), ("o-", "s--"), strict=True):
+        series = [each(rows[METRES, steps], counter) for steps in STEPS]
+        texels.plot(STEPS, series, style, color=COLOURS[0], label=label)
+    touched = each(image, "texels")
+    texels.axhline(touched, color=QUIET, lw=1, ls=":", label="texels the arc touches")
+    errors.set(title="error", ylabel="bad at 1 px, % of mirror pixels")
+    texels.set(title="texels examined again, and never", ylabel=f"texels a mirror pixel ({METRES})")
     for axis in (errors, texels):
-        axis.set_xticks(STEPS, [str(n) for n in STEPS])
+        axis.set(xscale="log", yscale="log", xlabel="steps from t = 0 to 1")
+        axis.set_xticks(STEPS, [str(steps) for steps in STEPS])
         axis.minorticks_off()
         axis.grid(color=GRID, lw=0.6)
         axis.legend(fontsize=7.5)
-    errors.set_title("error")
-    texels.set_title("texels examined again, and never")
     figure.plot = plot
-    his = rows["t alone, metres", 200]
+    his = rows[METRES, 200]
+    wrong = ", ".join(f"{100 * bad_share(rows[label, 200]):.1f} % ({label})" for label in SEARCHES)
     figure.finding(
-        f"At his 200 steps in metres a pixel examines {each(his, 'texels-again'):.0f} texels again and leaves out "
-        f"{each(his, 'texels-skipped'):.0f} of the {each(image, 'texels'):.0f} its arc touches; "
-        + ", ".join(f"{bad(rows[label, 200])} bad by {label}" for label in SEARCHES)
-        + f", {bad(image)} by lines on all faces."
+        f"At his 200 steps in metres a pixel examines {each(his, 'texels-again'):.0f} texels again and "
+        f"leaves out {each(his, 'texels-skipped'):.0f} of the {touched:.0f} its arc touches. Bad at 1 px: "
+        f"{wrong}, and {100 * bad_share(image):.1f} % by lines on all faces."
     )
 
 
@@ -66,8 +71,8 @@ def each(row, counter):
     return row["counters"][counter] / row["reflector_pixels"]
 
 
-def bad(row):
-    return f"{100 * row['accuracy']['bad_share']['1']:.1f} %"
+def bad_share(row):
+    return row["accuracy"]["bad_share"]["1"]
 
 
 if __name__ == "__main__":

@@ -45,11 +45,10 @@ def draw(figure):
     axis.grid(color=GRID, lw=0.6)
     axis.legend(fontsize=7.5)
     figure.plot = plot
-    low, his, high = (shares[300, limit] for limit in (0.1, 1, 10))
+    limits = (0.1, 1, 10)
+    missing, other = (", ".join(percent(shares[300, limit], kind) for limit in limits) for kind in KINDS)
     figure.finding(
-        f"With faces of 300, {percent(low, 'missing')} are missing at 0.1 degrees, {percent(his, 'missing')} at "
-        f"1 and {percent(high, 'missing')} at 10; of another object are {percent(low, 'wrong_object')}, "
-        f"{percent(his, 'wrong_object')} and {percent(high, 'wrong_object')}."
+        f"With faces of 300, at 0.1, 1 and 10 degrees {missing} are missing and {other} of another object."
     )
 
 
