@@ -53,9 +53,11 @@ struct Meeting {
     share: f32,
     layer: u32,
     is_sheet: bool,
+    // At the back of what is solid.
+    from_back: bool,
 }
 
-const NOWHERE: Meeting = Meeting(2.0, 0u, false);
+const NOWHERE: Meeting = Meeting(2.0, 0u, false, false);
 
 fn nearer(a: Meeting, b: Meeting) -> Meeting {
     if b.share < a.share {
@@ -98,14 +100,14 @@ fn meet_solid(front: Patch, back: Patch, layers: vec2<u32>, passage: Passage) ->
     }
     // From the side: the nearer of the two.
     let from_back = select(enters.y > enters.x, before.y > before.x, enter == 0.0);
-    return Meeting(enter, select(layers.x, layers.y, from_back), false);
+    return Meeting(enter, select(layers.x, layers.y, from_back), false, from_back);
 }
 
 fn meet_sheet(surface: Patch, layer: u32, passage: Passage) -> Meeting {
     let before = ahead(surface, passage.enter);
     let after = ahead(surface, passage.leave);
     let crosses = surface.w > 0.0 && (before < 0.0) != (after < 0.0);
-    return Meeting(select(2.0, before / (before - after), crosses), layer, true);
+    return Meeting(select(2.0, before / (before - after), crosses), layer, true, false);
 }
 
 // Whether a place on the border to a neighbouring texel, relative to this one's centre, is on the given side of
@@ -128,28 +130,52 @@ fn sheet_beyond(passage: Passage, step: vec2<i32>, at: vec3<f32>, surface: Patch
     return is_so;
 }
 
-// Whether the texel the ray goes to agrees that it has met something. Where it grazes a bent surface, the plane
-// of one texel reaches beyond it.
-fn confirmed(passage: Passage, first: Meeting) -> bool {
-    if all(passage.forth == vec2(0)) {
+// How far a place between two texels' centres is in front of the chord of their parts of one surface. What bulges
+// lies between the chord and both planes, whatever its facets are.
+fn ahead_of_chord(here: Patch, there: Patch, at: vec3<f32>, step: vec2<f32>) -> f32 {
+    let share = dot(at.xy, step);
+    let along = at.xy - share * step;
+    return at.z - mix(height(here, along), height(there, along), share);
+}
+
+// Whether a neighbouring texel has the ray inside, or behind, what it met, where it leaves this one.
+fn agrees(passage: Passage, step: vec2<i32>, first: Meeting) -> bool {
+    let place = passage.texel + step;
+    if any(place < vec2(0)) || any(place >= vec2(i32(layered_map.size))) {
         return true;
     }
     let surface = patch_at(passage.face, passage.texel, first.layer);
-    let behind = ahead(surface, passage.leave) < 0.0;
     if first.is_sheet {
-        return sheet_beyond(passage, passage.forth, passage.leave, surface, behind);
+        return sheet_beyond(passage, step, passage.leave, surface, ahead(surface, passage.leave) < 0.0);
     }
-    let place = passage.texel + passage.forth;
-    let there = passage.leave - vec3(vec2<f32>(passage.forth), 0.0);
+    let away = vec2<f32>(step);
+    let there = passage.leave - vec3(away, 0.0);
+    // Gradients are half floats.
+    let rounding = 1.0e-5 * surface.w + 1.0e-3 * dot(abs(surface.gradient), vec2(1.0));
     let order = order_at(passage.face, place);
-    var is_so = false;
+    var inside = false;
     for (var slot = 0u; slot < slots_of(order); slot++) {
         let both = layers_of(order, slot);
         let front = patch_at(passage.face, place, both.x);
         let back = patch_at(passage.face, place, both.y);
-        is_so |= ahead(front, there) <= 0.0 && ahead(back, there) >= 0.0;
+        if first.from_back {
+            let past = ahead_of_chord(surface, back, passage.leave, away);
+            inside |= past >= -rounding && ahead(front, there) <= 0.0;
+        } else {
+            let past = ahead_of_chord(surface, front, passage.leave, away);
+            inside |= past <= rounding && ahead(back, there) >= 0.0;
+        }
     }
-    return is_so;
+    return inside;
+}
+
+// Whether the texel the ray goes to, and the nearest beside its way, agree that it has met something. Where it
+// grazes a bent surface, the plane of one texel reaches beyond it.
+fn confirmed(passage: Passage, first: Meeting) -> bool {
+    let sideways = select(vec2(-1), vec2(1), passage.leave.xy > vec2(0.0));
+    let beside = select(vec2(0, sideways.y), vec2(sideways.x, 0), passage.forth.x == 0);
+    let goes_on = all(passage.forth == vec2(0)) || agrees(passage, passage.forth, first);
+    return goes_on && agrees(passage, beside, first);
 }
 
 // What the ray meets first behind one texel.
@@ -177,8 +203,11 @@ fn meet_texel(passage: Passage) -> Meeting {
             skipped = front;
             skipped_layer = both.x;
         }
-        first = nearer(first, Meeting(select(solid.share, sheet.share, is_sheet),
-            select(solid.layer, sheet.layer, is_sheet), is_sheet));
+        if is_sheet {
+            first = nearer(first, sheet);
+        } else {
+            first = nearer(first, solid);
+        }
     }
     map_work.texels += 1u;
     map_work.intervals += slots;
@@ -186,12 +215,12 @@ fn meet_texel(passage: Passage) -> Meeting {
     let inside = narrow <= joint(skipped.w);
     if inside && any(passage.back != vec2(0)) {
         if sheet_beyond(passage, passage.back, passage.enter, skipped, here >= 0.0) {
-            return Meeting(0.0, skipped_layer, true);
+            return Meeting(0.0, skipped_layer, true, false);
         }
     }
     let departs = ahead(skipped, passage.leave) < here;
     if passage.seam && here < 0.0 && narrow < 1.0e-5 * skipped.w && departs {
-        return Meeting(0.0, skipped_layer, true);
+        return Meeting(0.0, skipped_layer, true, false);
     }
     return first;
 }

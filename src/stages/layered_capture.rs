@@ -118,7 +118,8 @@ impl LayeredCapture {
 
 /// Pipelines that fill layered captures.
 pub struct LayeredCaptureStage {
-    background: GraphicsPipeline,
+    /// Where sides are marked nobody asks what lies behind the last surface.
+    background: Option<GraphicsPipeline>,
     surfaces: GraphicsPipeline,
     /// Fills the last layer where sides are marked.
     farthest: Option<GraphicsPipeline>,
@@ -152,7 +153,9 @@ impl LayeredCaptureStage {
         let file = "stages/layered_capture.wgsl";
         let farthest = Attachments { depth: Depth::Farthest, ..surfaces };
         Ok(LayeredCaptureStage {
-            background: pipeline("stages/layered_background.wgsl", &background)?,
+            background: (sides != Sides::Marked)
+                .then(|| pipeline("stages/layered_background.wgsl", &background))
+                .transpose()?,
             surfaces: pipeline(file, &surfaces)?,
             farthest: (sides == Sides::Marked).then(|| pipeline(file, &farthest)).transpose()?,
         })
@@ -171,9 +174,11 @@ impl LayeredCaptureStage {
     ) -> Result<()> {
         target.centre = centre;
         let target = &*target;
-        let pass = frame.pass(&format!("{name}/capture-background")).graphics(&self.background);
-        attach(scene.bind(pass), target, 0)
-            .draw_layers(6 * target.layers, |draw| draw.vertices(3))?;
+        if let Some(background) = &self.background {
+            let pass = frame.pass(&format!("{name}/capture-background")).graphics(background);
+            attach(scene.bind(pass), target, 0, true)
+                .draw_layers(6 * target.layers, |draw| draw.vertices(3))?;
+        }
         let uniform = CubeUniform::new(centre);
         let objects = match &self.farthest {
             None => None,
@@ -192,7 +197,7 @@ impl LayeredCaptureStage {
                 start.clear(&[("depth_before", before, Load::Clear([f32::INFINITY; 4]))])?;
             }
             let pass = frame.pass(&format!("{name}/capture")).graphics(pipeline);
-            let mut pass = attach(scene.bind(pass), target, 6 * layer)
+            let mut pass = attach(scene.bind(pass), target, 6 * layer, self.background.is_some())
                 .uniform("cube", &uniform)
                 .sample("depth_before", before)
                 .colour("depth", own, Load::Clear([0.0; 4]))
@@ -206,17 +211,17 @@ impl LayeredCaptureStage {
     }
 }
 
-/// Draw into the images of a capture from a layer on, keeping what is there.
-fn attach<'f>(pass: Pass<'f>, target: &'f LayeredCapture, first: u32) -> Pass<'f> {
-    let pass = pass.colour_from("surface", &target.surface, first, Load::Keep).colour_from(
-        "radiance",
-        &target.radiance,
-        first,
-        Load::Keep,
-    );
+/// Draw into the images of a capture from a layer on, keeping what is there or starting from nothing.
+fn attach<'f>(pass: Pass<'f>, target: &'f LayeredCapture, first: u32, keep: bool) -> Pass<'f> {
+    let (floats, words) = match keep {
+        true => (Load::Keep, Load::Keep),
+        false => (Load::Clear([0.0; 4]), Load::ClearWords([0; 4])),
+    };
+    let pass = pass.colour_from("surface", &target.surface, first, words);
+    let pass = pass.colour_from("radiance", &target.radiance, first, floats);
     match &target.ids {
         None => pass,
-        Some(ids) => pass.colour_from("ids", ids, first, Load::Keep),
+        Some(ids) => pass.colour_from("ids", ids, first, words),
     }
 }
 
