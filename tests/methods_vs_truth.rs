@@ -14,7 +14,7 @@ const SIZE: [u32; 2] = [128, 96];
 
 /// A case, a scene, and the band its `bad_share` at 1 px lies in. Environment maps of a near scene
 /// are wrong nearly everywhere; what is right shows the environment or the far floor.
-const BANDS: [(&str, &str, [f64; 2]); 22] = [
+const BANDS: [(&str, &str, [f64; 2]); 25] = [
     ("environment-map", "sky", [0.0, 0.0]),
     ("environment-map", "columns", [0.3, 0.75]),
     ("environment-map", "patow-room", [0.8, 1.0]),
@@ -37,6 +37,9 @@ const BANDS: [(&str, &str, [f64; 2]); 22] = [
     ("z-buffered-map", "sky", [0.0, 0.0]),
     ("z-buffered-map", "patow-room", [0.008, 0.03]),
     ("z-buffered-map:layers=1", "clutter-60", [0.02, 0.1]),
+    ("z-buffered-map@revised:size=256", "sky", [0.0, 0.0]),
+    ("z-buffered-map@revised:size=256", "columns", [0.001, 0.03]),
+    ("z-buffered-map@revised:size=256", "patow-room", [0.0, 0.005]),
 ];
 
 #[test]
