@@ -144,7 +144,8 @@ fn the_same_room_in_metres_centimetres_and_kilometres_gives_different_pictures()
         for unit in [",unit_m=0.01", ",unit_m=1000"] {
             let other = shown(search, unit);
             let different = share(&pixels, |i| metres.record.ids[i] != other.record.ids[i]);
-            assert!(different > 0.1, "{search}{unit}: {different}");
+            let least = if search == "vector" { 0.6 } else { 0.1 };
+            assert!(different > least, "{search}{unit}: {different}");
         }
         let same = shown(search, ",unit_m=1");
         assert_eq!(metres, same, "{search}");
@@ -188,6 +189,29 @@ fn the_best_angle_sees_the_wall_through_a_thin_pole() {
         let through = share(&pixels, |i| tested.record.ids[i].object == wall);
         assert!(through > 0.4, "{case}: {through} of the pole's pixels show the wall");
     }
+}
+
+/// What is wrong in his own scene is of that kind, and neither finer faces nor a lower limit help.
+#[test]
+fn most_wrong_objects_of_the_room_are_seen_through_another() {
+    let (session, scene) = (Session::open(), scene::load("patow-room").unwrap());
+    let size = [256, 256];
+    let truth = tracer(&scene, &scene.at(0)).frame(size);
+    let wrong_and_through = |case: &str| {
+        let tested = frame(&session, &scene, case, size, 0);
+        let object = |f: &FrameRecord, i: usize| f.record.ids[i].object;
+        let found = |f: &FrameRecord, i: usize| f.record.ids[i].status() == Status::Found;
+        let mut wrong = truth.reflector_pixels();
+        wrong.retain(|&i| found(&truth, i) && found(&tested, i));
+        wrong.retain(|&i| object(&truth, i) != object(&tested, i));
+        // Farther along much the same ray.
+        let through = |i: usize| tested.record.last[i].w > 1.2 * truth.record.last[i].w;
+        (wrong.len() as f64, share(&wrong, through))
+    };
+    let (wrong, through) = wrong_and_through(CASE);
+    assert!(through > 0.6, "{through} of {wrong} pixels");
+    let (finer, _) = wrong_and_through("z-buffered-map:size=600,threshold_deg=0.5");
+    assert!(finer > 0.7 * wrong, "{finer} pixels instead of {wrong}");
 }
 
 /// "The algorithm complexity only depends on the number of reflective pixels rendered" (section 3).

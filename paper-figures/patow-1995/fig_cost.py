@@ -55,7 +55,7 @@ def draw(figure):
     examined, again = (np.array([each(rows[s], counter) for s in SEARCHES]) for counter in counted)
     work.barh(places, examined - again, 0.5, color=COLOURS[0], label="texels examined")
     work.barh(places, again, 0.5, left=examined - again, color=COLOURS[4], label="of them again")
-    work.set_xlabel("a mirror pixel")
+    work.set(xlabel="a mirror pixel", xlim=(0, 1.05 * examined.max()))
     work.set_title("work")
     for axis, columns in ((costs, 3), (work, 2)):
         axis.set_axisbelow(True)
