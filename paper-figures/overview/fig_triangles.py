@@ -47,6 +47,7 @@ def draw(figure):
             f"{capture[-1]:.0f}", frames,
         ])  # fmt: skip
     plot, axis = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+    plot.get_layout_engine().set(rect=(0, 0.05, 1, 0.95))
     lines = {**reflect, "taking the map (first call)": capture}
     for (label, times), colour, marker in zip(lines.items(), COLOURS, MARKERS, strict=False):
         axis.plot(triangles, times, color=colour, marker=marker, ms=5, label=label)
