@@ -276,3 +276,28 @@ scale = 0.5
     write("a.mtl", "newmtl Iron\nKd 0.5 0.5 0\nnewmtl Blue steel\nKd 0 0 1\n");
     assert_ne!(scene.hash, scene::load(path.to_str().unwrap()).unwrap().hash);
 }
+
+#[test]
+fn the_scenes_of_2006_have_the_papers_numbers() {
+    // Estalella et al. 2006, section 6: vertices before subdivision, reflectors.
+    for (name, vertices, near, reflectors) in
+        [("kitchen-table1", 11_379, 0, 1), ("ufo", 63_884, 50, 1), ("ants", 14_859, 5, 8)]
+    {
+        let scene = scene::load(name).unwrap();
+        let found = scene.vertices();
+        assert!(found.abs_diff(vertices) <= near, "{name} has {found} vertices");
+        assert_eq!(scene.reflectors().len(), reflectors, "{name}");
+    }
+}
+
+#[test]
+fn the_camera_of_the_kitchen_ends_a_quarter_metre_from_the_bowl() {
+    let scene = scene::load("kitchen-table1").unwrap();
+    let moment = scene.at(scene.frames - 1);
+    let bowl = only(&scene, "bowl");
+    let points = scene.mesh_of(bowl).positions.iter();
+    let away = points
+        .map(|&p| moment.camera.eye.distance(moment.poses[bowl as usize].transform_point3(p)));
+    let nearest = away.fold(f32::MAX, f32::min);
+    assert!((nearest - 0.25).abs() < 0.03, "{nearest} m");
+}

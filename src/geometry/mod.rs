@@ -10,6 +10,7 @@ pub mod mesh;
 pub mod optics;
 pub mod polynomial;
 pub mod shapes;
+pub mod subdivide;
 pub mod tree;
 pub mod wide_tree;
 

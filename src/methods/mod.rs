@@ -11,6 +11,7 @@ pub mod params;
 mod planar_mirror;
 mod ray_traced;
 mod truth;
+mod virtual_objects;
 
 use std::sync::Arc;
 
@@ -128,5 +129,11 @@ pub struct MethodInfo {
 }
 
 /// The methods a user can name.
-pub static METHODS: &[MethodInfo] =
-    &[truth::INFO, none::INFO, ray_traced::INFO, environment_map::INFO, planar_mirror::INFO];
+pub static METHODS: &[MethodInfo] = &[
+    truth::INFO,
+    none::INFO,
+    ray_traced::INFO,
+    environment_map::INFO,
+    planar_mirror::INFO,
+    virtual_objects::INFO,
+];

@@ -179,7 +179,9 @@ impl Builder {
             return Err(self.source.error(&own.span(), message));
         }
         let motion = self.motion(file)?;
-        for part in self.make(file)? {
+        let scale = file.scale.map_or(1.0, |s| s.0);
+        let closed = file.closed.as_ref().map(|shape| self.closed(shape, scale)).transpose()?;
+        for part in self.make(&file.shape, scale)? {
             let name = match &part.name {
                 Some(part) => format!("{group}.{}", part.replace(|c| !is_name_character(c), "-")),
                 None => group.clone(),
@@ -194,6 +196,7 @@ impl Builder {
                 name,
                 group: group.clone(),
                 mesh: part.mesh,
+                closed,
                 material,
                 surface: part.surface,
                 motion: motion.clone(),
@@ -215,16 +218,25 @@ impl Builder {
         Ok(text.clone())
     }
 
-    /// The meshes of an object, from the store where an equal shape was made before.
-    fn make(&mut self, file: &ObjectFile) -> Result<Vec<MadePart>> {
-        let scale = file.scale.map_or(1.0, |s| s.0);
-        let shape = file.shape.get_ref();
-        let key = format!("{scale} {}", &self.source.text()[file.shape.span()]);
+    /// The mesh of a closed partner.
+    fn closed(&mut self, shape: &Spanned<ShapeFile>, scale: f32) -> Result<usize> {
+        match self.make(shape, scale)?.as_slice() {
+            [one] => Ok(one.mesh),
+            _ => {
+                let message = "closed has several parts; valid: a shape of one part";
+                Err(self.source.error(&shape.span(), message))
+            }
+        }
+    }
+
+    /// The meshes of a shape, from the store where an equal one was made before.
+    fn make(&mut self, shape: &Spanned<ShapeFile>, scale: f32) -> Result<Vec<MadePart>> {
+        let key = format!("{scale} {}", &self.source.text()[shape.span()]);
         if let Some(made) = self.made.get(&key) {
             return Ok(made.clone());
         }
         let mut made = Vec::new();
-        for part in parts(&mut self.source, shape, &file.shape.span())? {
+        for part in parts(&mut self.source, shape.get_ref(), &shape.span())? {
             self.meshes.push(part.mesh.scaled(scale));
             let surface = part.surface.map(|surface| surface.scaled(scale));
             let mesh = self.meshes.len() - 1;
