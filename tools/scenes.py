@@ -188,7 +188,7 @@ def ufo():
         shape = f'{{ obj = {{ file = "models/{name}.obj", materials = {{ wall = "{wall}", window = "pane" }} }} }}'
         lines += placed(f"building-{i + 1}", shape, position=(x, 0, z))
     for i in range(6):
-        lane, along = (-12.0, 1) if i % 2 == 0 else (12.0, -1)
+        lane, along = (-9.0, 1) if i % 2 == 0 else (3.0, -1)
         # 20 m apart in a lane; 6 m a second.
         begin = along * (-50.0 + 20.0 * (i // 2))
         keys = [(0.0, (begin, 0, lane), 0.0 if along > 0 else 180.0),

@@ -56,8 +56,14 @@ class Run:
 
     def path(self, row: dict) -> list[dict]:
         """The frames of a followed path, in order, from the arrays beside the results."""
-        arrays = (self.files / f"{row['run']}.frames.json").read_text(encoding="utf-8")
-        return json.loads(arrays)["path"]
+        return self._arrays(row)["path"]
+
+    def path_counters(self, row: dict) -> list[dict]:
+        """The work of each frame of a followed path, in order, by counter."""
+        return self._arrays(row)["path_counters"]
+
+    def _arrays(self, row: dict) -> dict:
+        return json.loads((self.files / f"{row['run']}.frames.json").read_text(encoding="utf-8"))
 
 
 def _last_number(stem: str) -> int | None:

@@ -7,7 +7,7 @@ enable primitive_index;
 #import common::record::{found_chain, packed_ids, packed_radiance}
 
 @group(0) @binding(0) var<uniform> reflector: u32;
-// V' of each vertex, world.
+// V' of each vertex, world; the fourth is 1 where the vertex is hidden.
 @group(0) @binding(1) var<storage, read> virtual_vertices: array<vec4<f32>>;
 // The scene's triangle each triangle lies in, and where each object's begin.
 @group(0) @binding(2) var<storage, read> source_triangles: array<u32>;
@@ -16,14 +16,26 @@ enable primitive_index;
 @group(0) @binding(31) var reflector_id: texture_2d<u32>;
 @group(0) @binding(32) var reflector_position: texture_2d<f32>;
 
+struct VirtualSurface {
+    @builtin(position) clip: vec4<f32>,
+    // Of the source: what is shown.
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) uv: vec2<f32>,
+    @location(3) @interpolate(flat) object: u32,
+    // 1 where the vertex is hidden.
+    @location(4) hidden: f32,
+}
+
 @vertex
 fn vertex(
     @builtin(vertex_index) index: u32,
     @builtin(instance_index) object: u32,
-) -> Surface {
-    var out = surface_vertex(index, object);
-    out.clip = camera.clip_from_world * vec4(virtual_vertices[index].xyz, 1.0);
-    return out;
+) -> VirtualSurface {
+    let source = surface_vertex(index, object);
+    let image = virtual_vertices[index];
+    let clip = camera.clip_from_world * vec4(image.xyz, 1.0);
+    return VirtualSurface(clip, source.position, source.normal, source.uv, object, image.w);
 }
 
 struct Reflected {
@@ -35,9 +47,12 @@ struct Reflected {
 #endif
 }
 
+// All three corners are hidden where the share of hidden corners is 1, but for rounding.
+const ALL_HIDDEN: f32 = 0.9999;
+
 @fragment
 fn fragment(
-    in: Surface,
+    in: VirtualSurface,
     @builtin(primitive_index) primitive: u32,
     @builtin(front_facing) front: bool,
 ) -> Reflected {
@@ -52,8 +67,14 @@ fn fragment(
         discard;
     }
 #endif
+#ifndef DRAW_HIDDEN
+    if in.hidden > ALL_HIDDEN {
+        discard;
+    }
+#endif
     let bounce = textureLoad(reflector_position, pixel, 0).xyz;
-    let colour = surface_colour(in, in.position - bounce);
+    let source = Surface(in.clip, in.position, in.normal, in.uv, in.object);
+    let colour = surface_colour(source, in.position - bounce);
     let rank = objects[reflector].rank;
     let triangle = source_triangles[first_triangles[in.object] + primitive];
     let chain = found_chain(colour, in.position, bounce, in.object, triangle, rank);

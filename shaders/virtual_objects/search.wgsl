@@ -30,7 +30,7 @@ struct Search {
 @group(0) @binding(4) var<storage, read> start: array<u32>;
 // T_SP of section 5.3: where each search of the frame before ended.
 @group(0) @binding(5) var<storage, read_write> texels: array<u32>;
-// V' in the world.
+// V' in the world; the fourth is 1 where the vertex is hidden.
 @group(0) @binding(6) var<storage, read_write> virtual_vertices: array<vec4<f32>>;
 @group(0) @binding(30) var<uniform> camera: Camera;
 
@@ -160,7 +160,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         image = mirrored(v, p, n);
 #endif
     }
-    virtual_vertices[index] = vec4(image, 1.0);
+    virtual_vertices[index] = vec4(image, select(0.0, 1.0, hidden));
     count(0u, 1u);
     count(1u, steps);
     count(2u, evaluations);

@@ -5,10 +5,10 @@
 //! Choices the paper leaves to us are parameters. Two more: a texel outside the reflector is never
 //! better than one on it, and a search whose first texel the reflector has left starts from the middle.
 //!
-//! One choice decides whether there is a picture at all: back faces must be culled. What lies hidden
-//! behind the reflector lands all round its silhouette, so a surface that crosses the hidden region is
-//! torn open at its middle, and the triangle there is stretched over the whole mirror, in front of the
-//! rest. It is a front of the scene, which a mirror would show turned round; culling alone removes it.
+//! Two choices decide whether there is a picture at all: triangles with three hidden vertices are left
+//! out, and back faces are culled. What lies hidden behind the reflector lands all round its
+//! silhouette, so a surface that crosses the hidden region is torn open in its middle, and a triangle
+//! there is stretched over the whole mirror, before the rest.
 
 mod params;
 mod search;
@@ -84,8 +84,12 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
 fn reflected_pipeline(setup: &Setup) -> Result<GraphicsPipeline> {
     let mode = setup.mode;
     let mut defines = mode.defines();
-    if setup.values.is("cull", "none") {
-        defines.push(("TWO_SIDED", 1));
+    for (parameter, value, define) in
+        [("cull", "none", "TWO_SIDED"), ("unseen", "draw", "DRAW_HIDDEN")]
+    {
+        if setup.values.is(parameter, value) {
+            defines.push((define, 1));
+        }
     }
     let attachments = Attachments {
         colours: mode.formats(),

@@ -71,7 +71,14 @@ pub const PARAMS: &[Param] = &[
         kind: Kind::Choice(&["back", "none"]),
         defaults: &["back"],
         needs: None,
-        doc: "draw the sides a mirror shows alone, or both (unstated); what is hidden faces the other way",
+        doc: "draw only the sides of virtual triangles that a mirror shows, or both (unstated)",
+    },
+    Param {
+        name: "unseen",
+        kind: Kind::Choice(&["drop", "draw"]),
+        defaults: &["drop"],
+        needs: None,
+        doc: "triangles of which all three vertices are hidden: left out, or drawn (unstated)",
     },
     Param {
         name: "subdivide",
