@@ -14,7 +14,7 @@ FRAMES = (80, 160, 240)
 
 
 def draw(figure):
-    strip(figure, SCENE, CASE, FRAMES, size="640x400")
+    strip(figure, SCENE, CASE, FRAMES, size="480x300")
 
 
 if __name__ == "__main__":

@@ -75,7 +75,8 @@ def strip(figure: Figure, scene: str, case: str, frames: tuple[int, ...], *, siz
         figure.compare(f"frame {frame}", *pictures, images.heat(error, traced.mirror))
         rows.append([str(frame), *accuracy_lines(ours.row).replace("\n", "; ").split(": ", 1)[1:]])
     height, width, _ = drawn.colour.shape
-    plot.set_size_inches(3.0 * len(frames), 6.0 * height / width + 1.0)
+    column = max(3.0, 8.4 / len(frames))
+    plot.set_size_inches(column * len(frames), 2 * column * height / width + 1.0)
     plot.get_layout_engine().set(rect=(0, 0.04, 1, 0.95), h_pad=0.02, w_pad=0.03)
     figure.table("Error", ["frame", "bad at 1 px"], rows)
     figure.finding("; ".join(f"frame {frame}: bad at 1 px {bad}" for frame, bad in rows) + ".")
