@@ -14,7 +14,7 @@ const SIZE: [u32; 2] = [128, 96];
 
 /// A case, a scene, and the band its `bad_share` at 1 px lies in. Environment maps of a near scene
 /// are wrong nearly everywhere; what is right shows the environment or the far floor.
-const BANDS: [(&str, &str, [f64; 2]); 25] = [
+const BANDS: [(&str, &str, [f64; 2]); 28] = [
     ("environment-map", "sky", [0.0, 0.0]),
     ("environment-map", "columns", [0.3, 0.75]),
     ("environment-map", "patow-room", [0.8, 1.0]),
@@ -40,6 +40,9 @@ const BANDS: [(&str, &str, [f64; 2]); 25] = [
     ("z-buffered-map@revised:size=256", "sky", [0.0, 0.0]),
     ("z-buffered-map@revised:size=256", "columns", [0.001, 0.03]),
     ("z-buffered-map@revised:size=256", "patow-room", [0.0, 0.005]),
+    ("virtual-objects", "columns", [0.05, 0.4]),
+    ("virtual-objects", "two-spheres", [0.1, 0.7]),
+    ("virtual-objects:subdivide=0.37", "kitchen-table1", [0.5, 0.99]),
 ];
 
 #[test]
@@ -57,6 +60,86 @@ fn every_method_errs_within_its_band() {
         let mismatch = accuracy.footprint_mismatch;
         assert!(mismatch <= 0.002, "{case} on {name}: footprint mismatch {mismatch}");
     }
+}
+
+#[test]
+fn virtual_objects_in_a_flat_mirror_are_the_planar_mirrors() {
+    // Any texel of a flat mirror gives the one plane, so the search cannot err.
+    let (session, scene) = (Session::open(), scene::load("lecture").unwrap());
+    let size = [320, 160];
+    let exact = frame(&session, &scene, "planar-mirror", size, 0);
+    let ours = frame(&session, &scene, "virtual-objects:cull=none", size, 0);
+    let pixels = common(&exact, &ours);
+    assert!(pixels.len() > 2000, "only {} pixels", pixels.len());
+    let near = |i: &&usize| {
+        let [a, b] = [&exact, &ours].map(|f| (f.record.ids[**i].object, f.record.point[**i]));
+        a.0 == b.0 && a.1.abs_diff_eq(b.1, 1e-3 * a.1.length().max(1.0))
+    };
+    let share = pixels.iter().filter(near).count() as f64 / pixels.len() as f64;
+    assert!(share > 0.995, "{share} of the pixels show the same point");
+}
+
+#[test]
+fn a_closed_partner_is_searched_in_place_of_an_open_mirror() {
+    // Half a sphere shows what the whole one does where both are seen, as the search does not end at
+    // its rim (Estalella et al. 2006, section 5.1).
+    let session = Session::open();
+    let shape = "{ sphere = { radius = 0.8, slices = 96, stacks = 48 } }";
+    let half = "{ revolution = { profile = [[0.0, -0.8], [0.44184, -0.8], [0.8, -0.44184], [0.8, 0.0]], \
+                curve = \"bezier\", slices = 96, stacks = 24 } }";
+    let whole = open_mirror(&session, shape, "");
+    let paired = open_mirror(&session, half, &format!("closed = {shape}"));
+    let alone = open_mirror(&session, half, "");
+    let right = |tested: &FrameRecord| {
+        let pixels = common(&whole, tested);
+        assert!(pixels.len() > 500, "only {} pixels", pixels.len());
+        let same = |i: &&usize| {
+            let (a, b) = (whole.record.point[**i], tested.record.point[**i]);
+            whole.record.ids[**i].object == tested.record.ids[**i].object && a.abs_diff_eq(b, 0.05)
+        };
+        pixels.iter().filter(same).count() as f64 / pixels.len() as f64
+    };
+    let (paired, alone) = (right(&paired), right(&alone));
+    assert!(paired > 0.9 && paired > alone + 0.02, "{paired} with a partner, {alone} without");
+}
+
+/// A mirror over a checkered floor, seen from below its middle.
+fn open_mirror(session: &Session, shape: &str, more: &str) -> FrameRecord {
+    let text = format!(
+        r#"
+        about = "test"
+        environment = {{ colour = [0.5, 0.6, 0.7] }}
+        materials = {{ mirror = {{ mirror = {{ reflectance = 1.0 }} }}, floor = {{ colour = [0.5, 0.5, 0.5] }} }}
+        [camera]
+        fov_deg = 40.0
+        eye = [0.0, 0.4, 3.4]
+        target = [0.0, 0.9, 0.0]
+        [[objects]]
+        name = "room"
+        shape = {{ sphere = {{ radius = 6.0, slices = 96, stacks = 48 }} }}
+        material = "floor"
+        [[objects]]
+        name = "mirror"
+        shape = {shape}
+        {more}
+        material = "mirror"
+        position = [0.0, 1.0, 0.0]
+        "#
+    );
+    let file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
+    std::fs::write(file.path(), text).unwrap();
+    let scene = scene::load(file.path().to_str().unwrap()).unwrap();
+    frame(session, &scene, "virtual-objects:cull=none", SIZE, 0)
+}
+
+#[test]
+fn what_is_hidden_covers_the_mirror_unless_it_is_left_out() {
+    // The table is torn open in the middle of the region hidden behind the bowl.
+    let (session, scene) = (Session::open(), scene::load("kitchen-table1").unwrap());
+    let case = "virtual-objects:subdivide=0.37";
+    let wrong = [case, &format!("{case},cull=none,unseen=draw")]
+        .map(|case| judged(&session, &scene, case, [320, 240], 132).1.wrong_object);
+    assert!(wrong[0] < 0.5 && wrong[1] > 0.6, "{wrong:?}");
 }
 
 #[test]

@@ -351,3 +351,28 @@ fn sticks_point_every_way() {
     let squares = axes.map(|axis| axis * axis).sum::<Vec3>() / 200.0;
     assert!((squares - 1.0 / 3.0).abs().max_element() < 0.1, "{squares}");
 }
+
+#[test]
+fn the_scenes_of_2006_have_the_papers_numbers() {
+    // Estalella et al. 2006, section 6: vertices before subdivision, reflectors.
+    for (name, vertices, near, reflectors) in
+        [("kitchen-table1", 11_379, 0, 1), ("ufo", 63_884, 50, 1), ("ants", 14_859, 5, 8)]
+    {
+        let scene = scene::load(name).unwrap();
+        let found = scene.vertices();
+        assert!(found.abs_diff(vertices) <= near, "{name} has {found} vertices");
+        assert_eq!(scene.reflectors().len(), reflectors, "{name}");
+    }
+}
+
+#[test]
+fn the_camera_of_the_kitchen_ends_a_quarter_metre_from_the_bowl() {
+    let scene = scene::load("kitchen-table1").unwrap();
+    let moment = scene.at(scene.frames - 1);
+    let bowl = only(&scene, "bowl");
+    let points = scene.mesh_of(bowl).positions.iter();
+    let away = points
+        .map(|&p| moment.camera.eye.distance(moment.poses[bowl as usize].transform_point3(p)));
+    let nearest = away.fold(f32::MAX, f32::min);
+    assert!((nearest - 0.25).abs() < 0.03, "{nearest} m");
+}

@@ -6,7 +6,7 @@ from matplotlib.patches import Rectangle
 
 from . import images
 from .figure import Figure
-from .runs import Run
+from .runs import Run, render
 from .text import accuracy_lines
 
 FRAME_COLOURS = ("#e8590c", "#0b7285")
@@ -57,6 +57,29 @@ def single(figure: Figure, run: Run, label: str) -> None:
     plot, axis = plt.subplots(figsize=(5.2, 5.2 * height / width + 0.5), layout="constrained")
     plot.get_layout_engine().set(rect=(0, 0.04, 1, 0.945))
     _picture(axis, picture, label, [])
+    figure.plot = plot
+
+
+def strip(figure: Figure, scene: str, case: str, frames: tuple[int, ...], *, size: str) -> None:
+    """Frames of a path side by side: the case above, the truth below; how far it errs in each."""
+    plot, axes = plt.subplots(2, len(frames), layout="constrained", squeeze=False)
+    rows = []
+    for (above, below), frame in zip(axes.T, frames, strict=True):
+        ours, truth = (render(scene, of, frame=frame, size=size) for of in (case, "truth"))
+        figure.cite(ours, truth)
+        drawn, traced = ours.frame(), truth.frame()
+        _picture(above, images.to_srgb(drawn.colour), f"frame {frame}", [])
+        _picture(below, images.to_srgb(traced.colour), "ray traced", [])
+        error = images.colour_error(drawn.colour, traced.colour)
+        pictures = images.to_srgb(traced.colour), images.to_srgb(drawn.colour)
+        figure.compare(f"frame {frame}", *pictures, images.heat(error, traced.mirror))
+        rows.append([str(frame), *accuracy_lines(ours.row).replace("\n", "; ").split(": ", 1)[1:]])
+    height, width, _ = drawn.colour.shape
+    column = max(3.0, 8.4 / len(frames))
+    plot.set_size_inches(column * len(frames), 2 * column * height / width + 1.0)
+    plot.get_layout_engine().set(rect=(0, 0.04, 1, 0.95), h_pad=0.02, w_pad=0.03)
+    figure.table("Error", ["frame", "bad at 1 px"], rows)
+    figure.finding("; ".join(f"frame {frame}: bad at 1 px {bad}" for frame, bad in rows) + ".")
     figure.plot = plot
 
 

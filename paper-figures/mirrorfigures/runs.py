@@ -62,6 +62,10 @@ class Run:
         """GPU milliseconds of a pass in every frame timed, in the order played."""
         return [frame["passes_gpu_ms"][name] for frame in self._arrays(row)["timed"]]
 
+    def path_counters(self, row: dict) -> list[dict]:
+        """The work of each frame of a followed path, in order, by counter."""
+        return self._arrays(row)["path_counters"]
+
     def _arrays(self, row: dict) -> dict:
         """What stands beside the results, a value a frame."""
         return json.loads((self.files / f"{row['run']}.frames.json").read_text(encoding="utf-8"))

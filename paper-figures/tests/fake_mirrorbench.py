@@ -181,7 +181,7 @@ def row(scene: str, case: str, size: list[int], frame: int, timed: bool, baselin
         "passes": [
             {"name": s, "prepare": False, "gpu_ms": gpu, "cpu_ms": 0.0, "invocations": 100} for s in steps
         ],
-        "counters": dict.fromkeys(COUNTERS, 900), "accuracy": None if case == "truth" else accuracy, "stability": None,
+        "counters": dict.fromkeys(COUNTERS, 900) | {"searches": 10.0, "steps": 200.0, "max-steps": 50.0}, "accuracy": None if case == "truth" else accuracy, "stability": None,
         "clock": {"before_mhz": None, "after_mhz": None, "throttled": 0, "load": 0.1,
                   "load_after": 1.2, "steady": True},
     }  # fmt: skip
@@ -250,6 +250,9 @@ def main() -> int:
                 "frames": [first, end - 1], "jitter_px": frames[1]["jitter_px"], "pops": 1,
                 "temporal_error": None, "points": 900.0, "covered": 0.8, "speed_px": 1.5,
             }  # fmt: skip
+            arrays["path_counters"] = [
+                {"searches": 10, "steps": 20 + f["frame"] % 7, "max-steps": 9} for f in frames
+            ]
         if args.out:
             (args.out / f"{answer['run']}.frames.json").write_text(json.dumps(arrays))
         print(json.dumps(answer))

@@ -48,3 +48,10 @@ fn count(rank: u32, amount: u32) {
     atomicAdd(&counters[rank], amount);
 #endif
 }
+
+// Keep the most seen in the method's counter of this rank.
+fn count_most(rank: u32, amount: u32) {
+#ifdef RECORD_FULL
+    atomicMax(&counters[rank], amount);
+#endif
+}

@@ -209,6 +209,7 @@ impl Outcome {
             "run": self.row.run, "scene": self.row.scene.name, "case": self.row.case,
             "timed": timed.collect::<Vec<_>>(), "compared": compared.collect::<Vec<_>>(),
             "path": self.path.as_ref().map_or(&[][..], |path| &path.frames),
+            "path_counters": self.path.as_ref().map_or(&[][..], |path| &path.counters),
         });
         let path = folder.file(&format!("{}.frames.json", self.row.run));
         write_file(&path, |file| Ok(serde_json::to_writer(file, &arrays)?))?;

@@ -1,5 +1,7 @@
 //! Following a path: consecutive frames of every case, in full-record mode, for their stability.
 
+use std::collections::BTreeMap;
+
 use super::lab::Lab;
 use crate::error::Result;
 use crate::measure::{PathFrame, PathMeasure, Stability};
@@ -15,6 +17,8 @@ pub const DEFAULT_FRAMES: usize = 48;
 pub struct PathRun {
     pub stability: Stability,
     pub frames: Vec<PathFrame>,
+    /// Work of each frame, by counter.
+    pub counters: Vec<BTreeMap<String, u64>>,
 }
 
 /// Draws every case at every one of `frames`, which are consecutive, and follows the scene's points
@@ -27,14 +31,20 @@ pub fn follow(lab: &Lab, scene: &Scene, cases: &[Case], frames: &[u32]) -> Resul
     let artists = cases.iter().map(|case| lab.artist(scene, case, size));
     let mut artists = artists.collect::<Result<Vec<_>>>()?;
     let mut measure = PathMeasure::new(cases.len());
+    let mut counters = vec![Vec::with_capacity(frames.len()); cases.len()];
     for (i, &number) in frames.iter().enumerate() {
         let moment = scene.at(number);
         let tracer = Tracer::new(scene, &moment, TruthOptions::default());
         let of = frames.len();
         lab.progress.set_message(format!("{}: frame {} of {of} of the path", scene.name, i + 1));
-        let drawn = artists.iter_mut().map(|artist| Ok(artist.frame(&moment, size, i == 0)?.0));
+        let drawn = artists.iter_mut().zip(&mut counters).map(|(artist, counters)| {
+            let (frame, times) = artist.frame(&moment, size, i == 0)?;
+            counters.push(times.counters.into_iter().collect());
+            Ok(frame)
+        });
         measure.frame(&tracer, &tracer.frame(size), &drawn.collect::<Result<Vec<_>>>()?)?;
     }
-    let runs = measure.finish().into_iter();
-    Ok(runs.map(|(stability, frames)| PathRun { stability, frames }).collect())
+    let runs = measure.finish().into_iter().zip(counters);
+    let run = |((stability, frames), counters)| PathRun { stability, frames, counters };
+    Ok(runs.map(run).collect())
 }

@@ -16,6 +16,7 @@ pub mod random;
 pub mod reflection_plane;
 pub mod shapes;
 pub mod sphere_map;
+pub mod subdivide;
 pub mod texel_line;
 pub mod tree;
 pub mod wide_tree;

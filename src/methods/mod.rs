@@ -13,6 +13,7 @@ mod planar_mirror;
 mod ray_traced;
 mod screen_space;
 mod truth;
+mod virtual_objects;
 mod z_buffered_map;
 
 use std::sync::Arc;
@@ -152,4 +153,5 @@ pub static METHODS: &[MethodInfo] = &[
     z_buffered_map::INFO,
     distance_impostor::INFO,
     screen_space::INFO,
+    virtual_objects::INFO,
 ];

@@ -6,9 +6,9 @@ use glam::Vec3;
 
 use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
 use crate::error::{Error, Result};
-use crate::gpu::{Attachments, ComputePipeline, Depth, Frame, GraphicsPipeline, Load, Stencil};
+use crate::gpu::{Attachments, Depth, Frame, GraphicsPipeline, Load, Stencil};
 use crate::scene::{Moment, ObjectId, Scene};
-use crate::stages::{Footprint, GpuScene, ReflectionRecord, View};
+use crate::stages::{Footprint, GpuScene, MirroredEnvironment, ReflectionRecord, View};
 
 pub const INFO: MethodInfo = MethodInfo {
     id: "planar-mirror",
@@ -47,7 +47,7 @@ pub struct PlaneUniform {
 }
 
 struct PlanarMirror {
-    background: ComputePipeline,
+    background: MirroredEnvironment,
     mirrored: GraphicsPipeline,
 }
 
@@ -63,15 +63,10 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         depth: Depth::Nearest,
         stencil: Stencil::Within,
     };
-    let (device, folder) = (setup.device, "planar_mirror");
+    let (device, file) = (setup.device, "planar_mirror/mirrored.wgsl");
     Ok(Box::new(PlanarMirror {
-        background: ComputePipeline::new(device, &format!("{folder}/background.wgsl"), &defines)?,
-        mirrored: GraphicsPipeline::new(
-            device,
-            &format!("{folder}/mirrored.wgsl"),
-            &defines,
-            &attachments,
-        )?,
+        background: MirroredEnvironment::new(device, setup.mode)?,
+        mirrored: GraphicsPipeline::new(device, file, &defines, &attachments)?,
     }))
 }
 
@@ -108,9 +103,7 @@ impl ReflectionMethod for PlanarMirror {
         view: &View,
         record: &mut ReflectionRecord,
     ) -> Result<()> {
-        view.list_pixels(frame, scene, view.reflectors)?;
-        let pass = frame.pass("planar-mirror/background").compute(&self.background);
-        record.bind(view.bind(scene.bind(pass))).indirect(&view.footprint.pixels)?;
+        self.background.fill(frame, scene, "planar-mirror", view, record)?;
         for &object in view.reflectors {
             let (mut normal, mut offset) = plane(&scene.scene, scene.moment(), object)?;
             // A mirror shows the side its viewer is on.

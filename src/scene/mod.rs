@@ -58,6 +58,9 @@ pub struct Object {
     pub group: String,
     /// Index into [`Scene::meshes`].
     pub mesh: usize,
+    /// The watertight mesh of the same pose that stands for an open reflector where methods search it
+    /// (Estalella et al. 2006, section 5.1); never drawn.
+    pub closed: Option<usize>,
     /// Index into [`Scene::materials`].
     pub material: usize,
     /// The closed form the mesh approximates, in object space, where there is one.

@@ -102,6 +102,7 @@ mod tests {
                 name: "one".to_owned(),
                 group: "one".to_owned(),
                 mesh: 0,
+                closed: None,
                 material: 0,
                 surface: None,
                 motion: Motion::Still(Affine3A::IDENTITY),

@@ -102,6 +102,14 @@ impl ReflectionRecord {
         }
     }
 
+    /// Bind its counters alone, to a compute pass that answers no pixel.
+    pub fn bind_counters<'f>(&self, pass: Pass<'f>) -> Pass<'f> {
+        match &self.evidence {
+            None => pass,
+            Some(e) => pass.buffer("counters", &e.counters).optional(),
+        }
+    }
+
     /// Attach it to a graphics pass, keeping what is there.
     pub fn attach<'f>(&'f self, pass: Pass<'f>) -> Pass<'f> {
         let pass = pass.colour("record_radiance", &self.radiance, Load::Keep);

@@ -21,6 +21,24 @@ pub struct Vertex {
     v: f32,
 }
 
+impl Vertex {
+    /// Object space.
+    pub fn position(&self) -> Vec3 {
+        Vec3::from_array(self.position)
+    }
+
+    /// The vertices of a mesh, in order.
+    pub fn of(mesh: &Mesh) -> impl Iterator<Item = Vertex> {
+        let attributes = mesh.positions.iter().zip(&mesh.normals).zip(&mesh.uvs);
+        attributes.map(|((p, n), uv)| Vertex {
+            position: p.to_array(),
+            u: uv.x,
+            normal: n.to_array(),
+            v: uv.y,
+        })
+    }
+}
+
 /// WGSL `Object`.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -105,13 +123,7 @@ impl GpuScene {
         for mesh in &scene.meshes {
             let base = vertices.len() as u32;
             let first = indices.len() as u32;
-            let attributes = mesh.positions.iter().zip(&mesh.normals).zip(&mesh.uvs);
-            vertices.extend(attributes.map(|((p, n), uv)| Vertex {
-                position: p.to_array(),
-                u: uv.x,
-                normal: n.to_array(),
-                v: uv.y,
-            }));
+            vertices.extend(Vertex::of(mesh));
             indices.extend(mesh.triangles.iter().flatten().map(|i| i + base));
             ranges.push((first, indices.len() as u32 - first));
         }
@@ -232,6 +244,13 @@ impl GpuScene {
 
     pub fn draw_object(&self, draw: &mut Draw, object: ObjectId) {
         let (first, count) = self.range(object);
+        draw.indexed(&self.indices, first, count, object);
+    }
+
+    /// Draw an object, or the closed partner it has.
+    pub fn draw_closed(&self, draw: &mut Draw, object: ObjectId) {
+        let closed = self.scene.objects[object as usize].closed;
+        let (first, count) = closed.map_or(self.range(object), |mesh| self.ranges[mesh]);
         draw.indexed(&self.indices, first, count, object);
     }
 }

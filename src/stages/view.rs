@@ -1,7 +1,7 @@
 //! One view: what a method is given besides the scene.
 
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use glam::{Mat4, Vec2, Vec3, Vec4Swizzles};
 
 use super::{DirectView, Footprint};
 use crate::error::Result;
@@ -49,6 +49,24 @@ impl CameraUniform {
             up: up.to_array(),
             half_height,
         }
+    }
+
+    /// The camera with its image widened about the middle, so that it shows `factor` times the width
+    /// and height.
+    pub fn widened(mut self, factor: f32) -> CameraUniform {
+        self.half_width *= factor;
+        self.half_height *= factor;
+        for column in &mut self.clip_from_world {
+            column[0] /= factor;
+            column[1] /= factor;
+        }
+        self
+    }
+
+    /// Where world points are on the image, -1 to 1, y down; `None` behind the eye.
+    pub fn project(&self, point: Vec3) -> Option<Vec2> {
+        let clip = Mat4::from_cols_array_2d(&self.clip_from_world) * point.extend(1.0);
+        (clip.w > 0.0).then(|| clip.xy() / clip.w)
     }
 }
 
@@ -109,6 +127,27 @@ impl<'a> View<'a> {
 mod tests {
     use super::*;
     use crate::gpu::layout::assert_layout;
+
+    #[test]
+    fn a_widened_camera_shows_the_same_ray_nearer_the_middle() {
+        let camera = Camera {
+            eye: Vec3::new(1.0, 2.0, 3.0),
+            target: Vec3::new(0.2, 0.5, -0.3),
+            up: Vec3::Y,
+            projection: Projection::Perspective { fov_y: 1.0 },
+            near: 0.05,
+            far: 100.0,
+        };
+        let (size, pixel) = ([64, 48], Vec2::new(50.5, 7.5));
+        let ndc = 2.0 * pixel / Vec2::new(64.0, 48.0) - 1.0;
+        let point = camera.ray(size, pixel).at(3.0);
+        let uniform = CameraUniform::new(&camera, size);
+        assert!(uniform.project(point).unwrap().abs_diff_eq(ndc, 1e-5));
+        let wide = uniform.widened(1.5);
+        assert!(wide.project(point).unwrap().abs_diff_eq(ndc / 1.5, 1e-5));
+        assert!((wide.half_width / uniform.half_width - 1.5).abs() < 1e-6);
+        assert_eq!(uniform.project(camera.eye - (camera.target - camera.eye)), None);
+    }
 
     #[test]
     #[rustfmt::skip]

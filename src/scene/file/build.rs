@@ -183,8 +183,7 @@ impl Builder {
             None => {
                 let motion = self.motion(file)?;
                 let scale = file.scale.map_or(1.0, |s| s.0);
-                let made = self.make(file, scale)?;
-                self.add(file, defined, &group, made, motion)
+                self.add(file, defined, &group, scale, motion)
             }
             Some(scatter) => self.scattered(file, defined, &group, scatter),
         }
@@ -208,23 +207,23 @@ impl Builder {
         let reach = points.map(|p| p.length()).fold(0.0, f32::max);
         let placements = placements(&self.source, scatter, reach)?;
         for (number, Placement { scale, pose }) in (1..).zip(placements) {
-            let made = self.make(file, scale)?;
             let name = format!("{group}-{number}");
-            self.add(file, defined, &name, made, Motion::Still(pose))?;
+            self.add(file, defined, &name, scale, Motion::Still(pose))?;
         }
         Ok(())
     }
 
-    /// The parts of an object into the scene.
+    /// The parts of an object, at a scale, into the scene.
     fn add(
         &mut self,
         file: &ObjectFile,
         defined: &Defined,
         group: &str,
-        made: Vec<MadePart>,
+        scale: f32,
         motion: Motion,
     ) -> Result<()> {
-        for part in made {
+        let closed = file.closed.as_ref().map(|shape| self.closed(shape, scale)).transpose()?;
+        for part in self.make(&file.shape, scale)? {
             let name = match &part.name {
                 Some(part) => format!("{group}.{}", part.replace(|c| !is_name_character(c), "-")),
                 None => group.to_owned(),
@@ -239,6 +238,7 @@ impl Builder {
                 name,
                 group: group.to_owned(),
                 mesh: part.mesh,
+                closed,
                 material,
                 surface: part.surface,
                 motion: motion.clone(),
@@ -260,15 +260,25 @@ impl Builder {
         Ok(text.clone())
     }
 
-    /// The meshes of an object at a scale, from the store where an equal shape was made before.
-    fn make(&mut self, file: &ObjectFile, scale: f32) -> Result<Vec<MadePart>> {
-        let shape = file.shape.get_ref();
-        let key = format!("{scale} {}", &self.source.text()[file.shape.span()]);
+    /// The mesh of a closed partner.
+    fn closed(&mut self, shape: &Spanned<ShapeFile>, scale: f32) -> Result<usize> {
+        match self.make(shape, scale)?.as_slice() {
+            [one] => Ok(one.mesh),
+            _ => {
+                let message = "closed has several parts; valid: a shape of one part";
+                Err(self.source.error(&shape.span(), message))
+            }
+        }
+    }
+
+    /// The meshes of a shape, from the store where an equal one was made before.
+    fn make(&mut self, shape: &Spanned<ShapeFile>, scale: f32) -> Result<Vec<MadePart>> {
+        let key = format!("{scale} {}", &self.source.text()[shape.span()]);
         if let Some(made) = self.made.get(&key) {
             return Ok(made.clone());
         }
         let mut made = Vec::new();
-        for part in parts(&mut self.source, shape, &file.shape.span())? {
+        for part in parts(&mut self.source, shape.get_ref(), &shape.span())? {
             self.meshes.push(part.mesh.scaled(scale));
             let surface = part.surface.map(|surface| surface.scaled(scale));
             let mesh = self.meshes.len() - 1;

@@ -182,6 +182,7 @@ fn white() -> Colour {
 pub struct ObjectFile {
     pub name: Spanned<String>,
     pub shape: Spanned<ShapeFile>,
+    pub closed: Option<Spanned<ShapeFile>>,
     pub material: Option<Spanned<String>>,
     pub position: Option<Triple>,
     pub rotation_deg: Option<Triple>,

@@ -1,4 +1,4 @@
-// The environment in a flat mirror, over the mirror's pixels.
+// The environment as mirrors show it, over their pixels: what is behind all that is mirrored.
 #import bindings::record::write_record
 #import bindings::scene::{environment, objects}
 #import bindings::view::{mirror_point, pixel_count}
