@@ -304,7 +304,7 @@ fn measure_clutter() {
         let (mut bad, mut traced, mut unflagged, mut compared) = (0.0, 0.0, 0, 0);
         for seed in 0..20 {
             let scene = reseeded(name, seed);
-            let case = |layers| format!("z-buffered-map@revised:size=256,layers={layers}");
+            let case = |layers| format!("z-buffered-map@revised:size=512,layers={layers}");
             one += judged(&session, &scene, &case(1), size, 0).1.wrong_object / 20.0;
             let (tested, accuracy, maps) = judged(&session, &scene, &case(2), size, 0);
             two += accuracy.wrong_object / 20.0;

@@ -5,10 +5,9 @@
 // The lecture's "Solution 1" looks colours up at the corners of the reflector's triangles and blends
 // them (`SHADE_AT_VERTEX`), "Solution 2" blends the corners' rays and looks up at each pixel
 // (`SHADE_AT_VERTEX_RAY`); otherwise the ray, too, is each pixel's own.
-#import bindings::record::{RecordTargets, count, record_targets, write_record}
+#import bindings::record::count
 #import bindings::scene::objects
-#import bindings::view::{MirrorPoint, is_asked, mirror_point, mirror_point_at, pixel_count, reflector_id}
-#import common::cover::cover
+#import bindings::view::{MirrorPoint, mirror_point_at as point_at_pixel, reflector_id}
 #import common::proxy::unit_or
 #import common::record::{Chain, environment_chain, found_chain}
 #import environment_map::map::{ids_at, point_at, radiance_at, texels_between}
@@ -46,7 +45,7 @@ fn texels_to(at: MirrorPoint, aside: vec2<i32>) -> f32 {
             continue;
         }
         if textureLoad(reflector_id, pixel, 0).x == at.reflector {
-            let beside = mirror_point_at(vec2<u32>(pixel));
+            let beside = point_at_pixel(vec2<u32>(pixel));
             let direction = sight(beside.position, beside.outgoing);
             return texels_between(sight(at.position, at.outgoing), direction);
         }
@@ -98,33 +97,4 @@ fn answer(at: MirrorPoint) -> Chain {
 #endif
 }
 
-#ifdef STAGE_FRAGMENT
-@vertex
-fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    return vec4(cover(index), 0.0, 1.0);
-}
-
-@fragment @early_depth_test(force)
-fn fragment(@builtin(position) position: vec4<f32>) -> RecordTargets {
-    let pixel = vec2<u32>(position.xy);
-    if !is_asked(pixel) {
-        discard;
-    }
-    let at = mirror_point_at(pixel);
-    if !at.departs {
-        discard;
-    }
-    return record_targets(answer(at));
-}
-#else
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= pixel_count() {
-        return;
-    }
-    let at = mirror_point(id.x);
-    if at.departs {
-        write_record(at.pixel, answer(at));
-    }
-}
-#endif
+#include includes/answered_pixels.wgsl

@@ -1,8 +1,7 @@
 // Screen-space reflection: the mirrored ray is followed through the picture itself.
-#import bindings::record::{RecordTargets, count, record_targets, write_record}
+#import bindings::record::count
 #import bindings::scene::{environment, materials, objects}
-#import bindings::view::{MirrorPoint, camera, is_asked, mirror_point, mirror_point_at, pixel_count}
-#import common::cover::cover
+#import bindings::view::{MirrorPoint, camera}
 #import common::record::{Chain, NO_OBJECT, environment_chain, found_chain}
 #import screen_space::trace::{screen_ray, seen_along}
 
@@ -54,33 +53,4 @@ fn answer(at: MirrorPoint) -> Chain {
     return found_chain(colour, point, at.position, seen.object, triangle, rank);
 }
 
-#ifdef STAGE_FRAGMENT
-@vertex
-fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    return vec4(cover(index), 0.0, 1.0);
-}
-
-@fragment @early_depth_test(force)
-fn fragment(@builtin(position) position: vec4<f32>) -> RecordTargets {
-    let pixel = vec2<u32>(position.xy);
-    if !is_asked(pixel) {
-        discard;
-    }
-    let at = mirror_point_at(pixel);
-    if !at.departs {
-        discard;
-    }
-    return record_targets(answer(at));
-}
-#else
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= pixel_count() {
-        return;
-    }
-    let at = mirror_point(id.x);
-    if at.departs {
-        write_record(at.pixel, answer(at));
-    }
-}
-#endif
+#include includes/answered_pixels.wgsl

@@ -3,10 +3,9 @@
 // surface point lies best on that ray. Names are the paper's; lines of its figures 4 and 7 stand
 // where they are carried out.
 #import bindings::layers::{MapTexel, layer_colour, layer_identity, layer_inverse_depth, layered_map, texel_direction}
-#import bindings::record::{RecordTargets, count, record_targets, write_record}
+#import bindings::record::count
 #import bindings::scene::{environment, objects}
-#import bindings::view::{MirrorPoint, is_asked, mirror_point, mirror_point_at, pixel_count}
-#import common::cover::cover
+#import bindings::view::MirrorPoint
 #import common::cube::cube_texel
 #import common::record::{Chain, environment_chain, found_chain}
 #import common::reflection_plane::is_parallel
@@ -99,33 +98,4 @@ fn background(at: MirrorPoint) -> Chain {
     return environment_chain(radiance, at.outgoing, at.position, objects[at.reflector].rank);
 }
 
-#ifdef STAGE_FRAGMENT
-@vertex
-fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    return vec4(cover(index), 0.0, 1.0);
-}
-
-@fragment @early_depth_test(force)
-fn fragment(@builtin(position) position: vec4<f32>) -> RecordTargets {
-    let pixel = vec2<u32>(position.xy);
-    if !is_asked(pixel) {
-        discard;
-    }
-    let at = mirror_point_at(pixel);
-    if !at.departs {
-        discard;
-    }
-    return record_targets(answer(at));
-}
-#else
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= pixel_count() {
-        return;
-    }
-    let at = mirror_point(id.x);
-    if at.departs {
-        write_record(at.pixel, answer(at));
-    }
-}
-#endif
+#include includes/answered_pixels.wgsl

@@ -1,7 +1,8 @@
 //! Shaders: WGSL with imports, compiled at start-up to SPIR-V, and what they bind.
 //!
-//! Files under `shaders/` that start with `#define_import_path` are modules others import; the
-//! rest are entry files. All are embedded in the binary; a shader folder on disk replaces them.
+//! Files under `shaders/` that start with `#define_import_path` are modules others import. Those of
+//! `shaders/includes` are text that others end with, by a last line `#include FILE`: entry points
+//! cannot be imported. The rest are entry files. All are embedded in the binary; a shader folder on disk replaces them.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -82,6 +83,7 @@ impl Shaders {
                 *text = Cow::Owned(read);
             }
         }
+        include(&mut sources)?;
         let composer = Composer::default().with_capabilities(capabilities());
         let mut shaders = Shaders { composer, sources };
         shaders.add_modules()?;
@@ -189,6 +191,22 @@ impl Shaders {
         let has_immediate = spaces.any(|s| s == naga::AddressSpace::Immediate);
         Ok(Compiled { spirv, bindings, has_immediate, entries })
     }
+}
+
+/// Put the text of files under `includes/` where others ask for it.
+fn include(sources: &mut Vec<(String, Cow<'static, str>)>) -> Result<()> {
+    let (included, mut rest): (Vec<_>, Vec<_>) =
+        sources.drain(..).partition(|(name, _)| name.starts_with("includes/"));
+    for (name, text) in &mut rest {
+        let Some((own, wanted)) = text.split_once("#include ") else { continue };
+        let wanted = wanted.trim();
+        let Some((_, ending)) = included.iter().find(|(name, _)| name == wanted) else {
+            return Err(Error::Shader(format!("shaders/{name} includes no file `{wanted}`")));
+        };
+        *text = Cow::Owned(format!("{own}{ending}"));
+    }
+    *sources = rest;
+    Ok(())
 }
 
 /// What the device is required to have, and no more: a shader beyond it fails here, by name. Only

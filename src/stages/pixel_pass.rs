@@ -1,9 +1,9 @@
 //! One shader over the pixels of a map's reflectors, in either of two forms: some GPUs shade
 //! fragments far slower than they compute.
 //!
-//! Its file has a function `answer(at: MirrorPoint) -> Chain` and three entry points that call it:
-//! `main`, and with `STAGE_FRAGMENT` defined `vertex` and `fragment`; `environment_map/reflect.wgsl`
-//! is an example.
+//! Its file has a function `answer(at: MirrorPoint) -> Chain` and ends with the entry points that call
+//! it, `#include includes/answered_pixels.wgsl`: `main`, and with `STAGE_FRAGMENT` defined `vertex`
+//! and `fragment`. `environment_map/reflect.wgsl` is an example.
 
 use std::sync::Arc;
 
