@@ -25,11 +25,13 @@ def speed_against_accuracy(rows_by_scene: dict[str, list[dict]], floor: str = "n
     style = {case: (COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)]) for i, case in enumerate(cases)}
     across = min(len(rows_by_scene), PANELS_ACROSS)
     down = -(-len(rows_by_scene) // across)
-    inches = (2.9 * across + 0.6, 2.9 * down + 0.6)
+    # The legend has three columns, and an entry more for the line of the floor.
+    below = 0.25 + 0.23 * -(-(len(style) + 1) // 3)
+    inches = (2.9 * across + 0.6, 2.9 * down + below)
     plot, axes = plt.subplots(
         down, across, figsize=inches, sharey=True, squeeze=False, layout="constrained"
     )
-    legend = 0.6 / inches[1]
+    legend = below / inches[1]
     plot.get_layout_engine().set(rect=(0, legend, 1, 1 - legend))
     for axis in axes.flat[len(rows_by_scene) :]:
         axis.remove()

@@ -13,6 +13,8 @@ CASES = [
     "ray-traced",
     "environment-map",
     "environment-map:index=surface",
+    "z-buffered-map@published",
+    "z-buffered-map@revised",
     "distance-impostor@published",
     "distance-impostor@revised",
     "screen-space",
