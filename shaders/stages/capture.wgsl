@@ -1,14 +1,7 @@
 enable primitive_index;
 // Surfaces into the six faces of a cube at once: colour, and where each texel's point is.
-#import bindings::surface::{Surface, surface_colour, surface_vertex}
-
-struct Cube {
-    clip_from_world: array<mat4x4<f32>, 6>,
-    centre: vec3<f32>,
-    // Nearest depth captured; a depth of z is stored as near / z.
-    near: f32,
-}
-@group(0) @binding(0) var<uniform> cube: Cube;
+#import bindings::faces::{cube, face_vertex}
+#import bindings::surface::{Surface, surface_colour}
 
 // The layer drawn into.
 var<immediate> face: u32;
@@ -18,9 +11,7 @@ fn vertex(
     @builtin(vertex_index) index: u32,
     @builtin(instance_index) object: u32,
 ) -> Surface {
-    var out = surface_vertex(index, object);
-    out.clip = cube.clip_from_world[face] * vec4(out.position, 1.0);
-    return out;
+    return face_vertex(index, object, face);
 }
 
 struct Texel {

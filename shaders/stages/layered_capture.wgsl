@@ -5,15 +5,9 @@ enable primitive_index;
 #ifdef MARK_SIDES
 #import bindings::scene::objects
 #endif
-#import bindings::surface::{Surface, surface_colour, surface_vertex}
+#import bindings::faces::{cube, face_vertex}
+#import bindings::surface::{Surface, surface_colour}
 
-struct Cube {
-    clip_from_world: array<mat4x4<f32>, 6>,
-    centre: vec3<f32>,
-    // Nearest depth captured; a depth of z is rasterised as near / z.
-    near: f32,
-}
-@group(0) @binding(0) var<uniform> cube: Cube;
 // Depths of the layer before, as rasterised: infinite before the first, 0 where it has nothing.
 @group(0) @binding(1) var depth_before: texture_2d_array<f32>;
 
@@ -31,9 +25,7 @@ fn vertex(
     @builtin(vertex_index) index: u32,
     @builtin(instance_index) object: u32,
 ) -> Surface {
-    var out = surface_vertex(index, object);
-    out.clip = cube.clip_from_world[face] * vec4(out.position, 1.0);
-    return out;
+    return face_vertex(index, object, face);
 }
 
 struct Texel {

@@ -149,8 +149,7 @@ impl ReflectionMethod for DistanceImpostor {
             }
         }
         for Impostor { objects, capture, distances } in &mut self.impostors {
-            let (low, high) = scene.scene.bounds_of(scene.moment(), objects);
-            let centre = 0.5 * (low + high);
+            let centre = scene.scene.centre_of(scene.moment(), objects);
             self.stage.capture(frame, scene, "distance-impostor", capture, centre, objects)?;
             frame
                 .pass("distance-impostor/distances")

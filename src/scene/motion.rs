@@ -29,6 +29,13 @@ impl Scene {
         boxes.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).unwrap_or((Vec3::ZERO, Vec3::ZERO))
     }
 
+    /// The middle of the box around some objects: where a map for them is taken from, as a map is
+    /// "rendered from the centroid of the reflector" (Martin & Popescu 2004, section 2.1).
+    pub fn centre_of(&self, moment: &Moment, objects: &[ObjectId]) -> Vec3 {
+        let (low, high) = self.bounds_of(moment, objects);
+        0.5 * (low + high)
+    }
+
     /// The corners of an object's triangles in the world at a moment, in the mesh's order.
     pub fn world_triangles(
         &self,

@@ -19,13 +19,13 @@ const NEAR: f32 = 1e-3;
 
 const FORMATS: [Format; 3] = [Format::Rgba16Float, Format::Rgba32Float, Format::Rgba32Uint];
 
-/// WGSL `Cube` of `shaders/stages/capture.wgsl`.
+/// WGSL `Cube` of `shaders/bindings/faces.wgsl`.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub struct CubeUniform {
-    pub(super) clip_from_world: [[[f32; 4]; 4]; 6],
-    pub(super) centre: [f32; 3],
-    pub(super) near: f32,
+    clip_from_world: [[[f32; 4]; 4]; 6],
+    centre: [f32; 3],
+    near: f32,
 }
 
 impl CubeUniform {

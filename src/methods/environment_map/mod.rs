@@ -81,9 +81,8 @@ impl ReflectionMethod for EnvironmentMap {
         }
         self.maker.prepare(frame, scene)?;
         for (objects, map) in &mut self.maps {
-            // "Rendered from the centroid of the reflector" (Martin & Popescu 2004, section 2.1).
-            let (low, high) = scene.scene.bounds_of(scene.moment(), objects);
-            self.maker.fill(frame, scene, map, 0.5 * (low + high), objects)?;
+            let centre = scene.scene.centre_of(scene.moment(), objects);
+            self.maker.fill(frame, scene, map, centre, objects)?;
         }
         Ok(())
     }

@@ -113,8 +113,7 @@ impl ReflectionMethod for Published {
             self.make_maps(scene, want.reflectors)?;
         }
         for (objects, map) in &mut self.maps {
-            let (low, high) = scene.scene.bounds_of(scene.moment(), objects);
-            let centre = 0.5 * (low + high);
+            let centre = scene.scene.centre_of(scene.moment(), objects);
             self.stage.capture(frame, scene, "z-buffered-map", map, centre, objects)?;
         }
         Ok(())

@@ -47,8 +47,8 @@ pub(super) fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         let moment = scene.at(0);
         let groups = scene.groups(reflectors);
         let needed = groups.iter().map(|(_, objects)| {
-            let (low, high) = scene.bounds_of(&moment, objects);
-            sizing::intervals(scene, &moment, 0.5 * (low + high), objects, MOST_INTERVALS)
+            let centre = scene.centre_of(&moment, objects);
+            sizing::intervals(scene, &moment, centre, objects, MOST_INTERVALS)
         });
         needed.max().unwrap_or(1)
     });
@@ -87,8 +87,7 @@ impl ReflectionMethod for Revised {
             }
         }
         for (objects, map) in &mut self.maps {
-            let (low, high) = scene.scene.bounds_of(scene.moment(), objects);
-            let centre = 0.5 * (low + high);
+            let centre = scene.scene.centre_of(scene.moment(), objects);
             self.stage.capture(frame, scene, "z-buffered-map", map, centre, objects)?;
         }
         Ok(())
