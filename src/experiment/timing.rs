@@ -214,7 +214,9 @@ pub(super) mod tests {
             near: 0.1,
             far: 10.0,
         };
-        (0..n).map(|frame| Moment { frame, camera, poses: Vec::new() }).collect()
+        (0..n)
+            .map(|frame| Moment { frame, time: frame as f32, camera, poses: Vec::new() })
+            .collect()
     }
 
     pub fn plan(repeat: Option<u32>) -> TimingPlan {
