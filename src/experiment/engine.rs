@@ -95,6 +95,8 @@ pub struct Engine {
     /// Opposite corners of the box of all eyes of the scene's camera path.
     eyes: [Vec3; 2],
     prepare_bytes: u64,
+    /// The frame drawn last.
+    drawn: Option<u32>,
 }
 
 /// Where one frame's passes stand among those of a submit.
@@ -145,6 +147,7 @@ impl Engine {
             composite: Composite::new(device, &gpu_scene, size)?,
             eyes: eyes(scene),
             prepare_bytes: 0,
+            drawn: None,
             fallback: fallback.transpose()?,
             fallback_prepared: None,
             parts,
@@ -190,14 +193,18 @@ impl Engine {
         Ok(named.filter_map(|(name, place)| Some(((*name).to_owned(), count(place)?))).collect())
     }
 
-    /// Draw frames in one submit, nothing read back: for timing.
+    /// Draw frames in one submit, nothing read back: for timing. A frame is a cut unless the one
+    /// before it was drawn last, here or by an earlier call; a frame drawn once more follows itself.
     pub fn burst(&mut self, moments: &[Moment]) -> Result<Vec<FrameTimes>> {
         self.frame.count_invocations(false);
         self.frame.begin()?;
         let recordings = moments
             .iter()
-            .enumerate()
-            .map(|(i, moment)| self.record_frame(moment, i == 0))
+            .map(|moment| {
+                let follows = |drawn| drawn == moment.frame || drawn + 1 == moment.frame;
+                let cut = !self.drawn.is_some_and(follows);
+                self.record_frame(moment, cut)
+            })
             .collect::<Result<Vec<_>>>()?;
         let recorded = self.frame.submit()?;
         Ok(recordings.iter().map(|recording| self.times(&recorded, recording)).collect())
@@ -248,6 +255,7 @@ impl Engine {
         let refracted = self.refracted.as_ref();
         self.composite.run(frame, scene, &view, &self.record, refracted)?;
         let end = self.frame.scopes();
+        self.drawn = Some(moment.frame);
         Ok(Recording { scene: start..posed, prepare: posed..prepared, passes: prepared..end })
     }
 
