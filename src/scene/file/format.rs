@@ -332,6 +332,8 @@ pub struct RevolutionFile {
     /// (radius, height) from the bottom to the top where the outside is away from the axis.
     pub profile: Vec<[Finite; 2]>,
     pub curve: CurveKind,
+    #[serde(default = "full_turn")]
+    pub sweep_deg: Turn,
     pub edge: Option<Positive>,
     pub slices: Option<Slices>,
     pub stacks: Option<Stacks>,
