@@ -4,13 +4,15 @@
 mod gpu_support;
 mod truth_support;
 
+use std::collections::BTreeSet;
 use std::f32::consts::TAU;
 
 use glam::Vec3;
-use gpu_support::{Session, engine, frame, judged, options};
-use mirrorbench::experiment::engine::{Fallback, FrameTimes, RunOptions};
+use gpu_support::{Session, engine, frame, judged, methods, options};
+use mirrorbench::experiment::engine::{Engine, Fallback, FrameTimes, RunOptions};
 use mirrorbench::geometry::Ray;
 use mirrorbench::measure::PathMeasure;
+use mirrorbench::methods::Case;
 use mirrorbench::scene::{NO_OBJECT, ObjectId, Scene};
 use mirrorbench::truth::{Cache, Tracer, TruthOptions};
 
@@ -214,4 +216,60 @@ fn a_kept_truth_belongs_to_its_moment() {
     assert_eq!(path(3, 3.0), path(3, 3.0));
     assert_ne!(path(3, 3.0), path(3, 3.5), "between frames the surface is another");
     assert_ne!(path(3, 3.0), path(4, 4.0));
+}
+
+#[test]
+fn what_wobbles_has_a_mesh_of_its_own_and_so_has_its_partner() {
+    let open = "shape = { cylinder = { radius = 0.5, height = 1.0, capped = false, edge = 0.05 } }
+closed = { cylinder = { radius = 0.5, height = 1.0, edge = 0.05 } }
+material = \"mirror\"";
+    let wave =
+        "wobble = { amplitude = 0.02, wavelength = 2.0, period_s = 1.0, towards = [1, 0, 0] }";
+    let other = wave.replace("0.02", "0.03");
+    let object =
+        |name: &str, wave: &str| format!("[[objects]]\nname = \"{name}\"\n{open}\n{wave}\n");
+    let scene = truth_support::scene(&format!(
+        "[camera]\nfov_deg = 40.0\neye = [0.0, 1.0, 4.0]\ntarget = [0.0, 0.0, 0.0]\n{}{}{}{}",
+        object("still", ""),
+        object("one", wave),
+        object("same", wave),
+        object("other", &other)
+    ));
+    let meshes = |i: usize| [scene.objects[i].mesh, scene.objects[i].closed.unwrap()];
+    assert_eq!(meshes(1), meshes(2), "what is alike is stored once");
+    let all: BTreeSet<usize> = [0, 1, 3].into_iter().flat_map(meshes).collect();
+    assert_eq!(all.len(), 6);
+    let wobbling: BTreeSet<usize> = scene.wobbles.keys().copied().collect();
+    assert_eq!(wobbling, [1, 3].into_iter().flat_map(meshes).collect());
+    assert!(!scene.wobbles(0) && scene.wobbles(1) && scene.is_moving(2));
+}
+
+#[test]
+fn a_flat_mirror_that_wobbles_is_not_taken_for_flat() {
+    let disc = |wave: &str| {
+        truth_support::scene(&format!(
+            r#"
+[camera]
+fov_deg = 40.0
+eye = [0.0, 2.0, 3.0]
+target = [0.0, 0.0, 0.0]
+[[objects]]
+name = "disc"
+shape = {{ revolution = {{ profile = [[1, 0], [0.7, 0], [0.3, 0], [0, 0]], curve = "bezier", slices = 48 }} }}
+material = "mirror"
+{wave}
+"#
+        ))
+    };
+    let session = Session::open();
+    let case = Case::parse("planar-mirror", &methods()).unwrap();
+    let made = |scene: &Scene| {
+        Engine::new(session.device(), scene, &case, &methods(), &options([64, 48])).map(drop)
+    };
+    made(&disc("")).unwrap();
+    let wave =
+        "wobble = { amplitude = 0.05, wavelength = 1.0, period_s = 1.0, towards = [1, 0, 0] }";
+    let error = made(&disc(wave)).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.to_string().contains("needs flat reflectors; `disc`"), "{error}");
 }
