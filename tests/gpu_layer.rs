@@ -55,6 +55,26 @@ fn a_buffer_or_image_beyond_the_limits_is_refused_with_the_numbers() {
 }
 
 #[test]
+fn a_frame_replaces_a_part_of_a_buffer_and_nothing_beyond_it() {
+    let session = Session::open();
+    let device = session.device();
+    let buffer = Buffer::with_data(device, "words", &[7u32; 8]).unwrap();
+    let mut frame = Frame::new(device).unwrap();
+    frame.begin().unwrap();
+    // In the order recorded.
+    frame.pass("test/first").copy(&buffer, 8, &[1u32, 2, 3]).unwrap();
+    frame.pass("test/second").copy(&buffer, 12, &[9u32]).unwrap();
+    for (offset, data) in [(28, &[0u32; 2][..]), (0, &[])] {
+        let error = frame.pass("test/beyond").copy(&buffer, offset, data).err().unwrap();
+        let message = error.to_string();
+        let named = ["test/beyond", "words", "32 bytes"].iter().all(|part| message.contains(part));
+        assert!(named, "{message}");
+    }
+    frame.submit().unwrap();
+    assert_eq!(buffer.read::<u32>().unwrap(), [7, 7, 1, 9, 3, 7, 7, 7]);
+}
+
+#[test]
 fn buffers_and_images_come_back_as_they_were_written() {
     let session = Session::open();
     let device = session.device();

@@ -94,8 +94,7 @@ const TRACER: Held = Held { percent: 99.9, floor: 1.0 };
 /// At least 99.99 % of the rays meet the same triangle (or none, both), at the same distance.
 ///
 /// A ray through the edge that two triangles share meets either, and so does one that meets a
-/// triangle the model has twice (in `kitchen` at frame 0 pixels that see a back panel do): that
-/// counts as the same where the distances agree to rounding.
+/// triangle the model has twice: that counts as the same where the distances agree to rounding.
 fn compare(what: &str, world: &World, held: Held, pairs: impl Iterator<Item = (Met, Met)>) {
     let (mut rays, mut same, mut tied, mut errors) = (0, 0, 0, Vec::new());
     for (ours, theirs) in pairs {

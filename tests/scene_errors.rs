@@ -60,6 +60,26 @@ fn wrong_lines_are_named_with_what_is_valid() {
             "test.toml:2: unknown key `frame`; valid: `about`, `frames`, `rate_hz`, `bounces`, `lighting`, `environment`, `camera`, `materials`, `objects`",
         ),
         ("frames = 2", "frames = 0", "test.toml:2: 0 is out of range; valid: 1 to 1000000"),
+        (
+            "material = \"mirror\"",
+            "material = \"mirror\"\nwobble = { amplitude = 0.1, wavelength = 1.0, period = 1.0 }",
+            "test.toml:20: unknown key `period`; valid: `amplitude`, `wavelength`, `period_s`, `towards`",
+        ),
+        (
+            "material = \"mirror\"",
+            "material = \"mirror\"\nwobble = { amplitude = 0.0, wavelength = 1.0, period_s = 1.0 }",
+            "test.toml:20: 0 is out of range; valid: 1e-6 to 1e6",
+        ),
+        (
+            "material = \"mirror\"",
+            "material = \"mirror\"\nwobble = { amplitude = 0.1, wavelength = 1.0, period_s = 1.0, towards = [0, 0, 0] }",
+            "test.toml:20: towards has no direction; valid: a vector that is not zero",
+        ),
+        (
+            "material = \"mirror\"",
+            "material = \"mirror\"\nwobble = { amplitude = 0.1, wavelength = 0.3, period_s = 1.0 }",
+            "test.toml:20: wavelength = 0.3 is too short for edges of 0.098 m along it; valid: 0.392 or more, or a shape cut more finely",
+        ),
         ("frames = 2", "bounces = 17", "test.toml:2: 17 is out of range; valid: 1 to 16"),
         (
             "frames = 2",

@@ -30,8 +30,7 @@ const PATHS: [(&str, f32, [f32; 2]); 9] = [
 
 /// The scene at a time between frames, numbered.
 fn moment(scene: &Scene, frame: u32, time: f32) -> Moment {
-    let poses = scene.objects.iter().map(|object| object.motion.at(time)).collect();
-    Moment { frame, camera: scene.camera.at(time), poses }
+    scene.at_time(frame, time)
 }
 
 /// Follows `FRAMES` frames of a scene that are `step` frames of its animation apart; `draw` makes what

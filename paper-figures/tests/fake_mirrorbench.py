@@ -167,7 +167,8 @@ def row(scene: str, case: str, size: list[int], frame: int, timed: bool, baselin
     compared = {"median": 1.7, "ci95": [1.6, 1.8], "verdict": "slower"}
     ratio = {"baseline": baseline, "rounds": 20, "frame": compared, "with_prepare": compared}
     gpu = {"median": scale / 2, "min": scale / 2, "p95": scale / 2}
-    steps = ("direct-view/shade", f"{case.split(':')[0]}/reflect")
+    waves = ("scene/deform", "scene/vertices") if "wobble" in scene else ()
+    steps = (*waves, "direct-view/shade", f"{case.split(':')[0]}/reflect")
     return {
         "schema_version": 2, "run": "toy", "commit": "0123456789abcdef",
         "scene": {"name": scene, "hash": "0", "triangles": 12, "vertices": 8, "objects": objects},

@@ -25,9 +25,9 @@ pub use crate::stages::RecordMode;
 pub struct FrameTimes {
     /// Passes recorded by the method's `prepare`; empty when nothing it depends on moved.
     pub prepare: Vec<PassTime>,
-    /// All other passes, in order.
+    /// All other passes, in order; first those that bring surfaces into the moment's shape.
     pub passes: Vec<PassTime>,
-    /// GPU milliseconds from the first timestamp to the last, prepare not included.
+    /// GPU milliseconds from the first timestamp to the last, without the time of `prepare`.
     pub frame_gpu_ms: f64,
     /// Bytes of device memory the prepared structures hold.
     pub prepare_bytes: u64,
@@ -95,10 +95,14 @@ pub struct Engine {
     /// Opposite corners of the box of all eyes of the scene's camera path.
     eyes: [Vec3; 2],
     prepare_bytes: u64,
+    /// The frame drawn last.
+    drawn: Option<u32>,
 }
 
 /// Where one frame's passes stand among those of a submit.
 struct Recording {
+    /// What the scene itself needs.
+    scene: Range<usize>,
     prepare: Range<usize>,
     passes: Range<usize>,
 }
@@ -143,6 +147,7 @@ impl Engine {
             composite: Composite::new(device, &gpu_scene, size)?,
             eyes: eyes(scene),
             prepare_bytes: 0,
+            drawn: None,
             fallback: fallback.transpose()?,
             fallback_prepared: None,
             parts,
@@ -188,14 +193,18 @@ impl Engine {
         Ok(named.filter_map(|(name, place)| Some(((*name).to_owned(), count(place)?))).collect())
     }
 
-    /// Draw frames in one submit, nothing read back: for timing.
+    /// Draw frames in one submit, nothing read back: for timing. A frame is a cut unless the one
+    /// before it was drawn last, here or by an earlier call; a frame drawn once more follows itself.
     pub fn burst(&mut self, moments: &[Moment]) -> Result<Vec<FrameTimes>> {
         self.frame.count_invocations(false);
         self.frame.begin()?;
         let recordings = moments
             .iter()
-            .enumerate()
-            .map(|(i, moment)| self.record_frame(moment, i == 0))
+            .map(|moment| {
+                let follows = |drawn| drawn == moment.frame || drawn + 1 == moment.frame;
+                let cut = !self.drawn.is_some_and(follows);
+                self.record_frame(moment, cut)
+            })
             .collect::<Result<Vec<_>>>()?;
         let recorded = self.frame.submit()?;
         Ok(recordings.iter().map(|recording| self.times(&recorded, recording)).collect())
@@ -205,6 +214,7 @@ impl Engine {
     fn record_frame(&mut self, moment: &Moment, cut: bool) -> Result<Recording> {
         let start = self.frame.scopes();
         self.scene.pose(&mut self.frame, moment)?;
+        let posed = self.frame.scopes();
         self.prepare(moment)?;
         let prepared = self.frame.scopes();
         let camera = CameraUniform::new(&moment.camera, self.options.size);
@@ -245,7 +255,8 @@ impl Engine {
         let refracted = self.refracted.as_ref();
         self.composite.run(frame, scene, &view, &self.record, refracted)?;
         let end = self.frame.scopes();
-        Ok(Recording { prepare: start..prepared, passes: prepared..end })
+        self.drawn = Some(moment.frame);
+        Ok(Recording { scene: start..posed, prepare: posed..prepared, passes: prepared..end })
     }
 
     /// Prepare the methods for which something they depend on moved.
@@ -274,7 +285,8 @@ impl Engine {
         let Some(fallback) = self.fallback.as_mut().filter(|fallback| fallback.has_tree()) else {
             return Ok(());
         };
-        let moved = |before: &Moment| before.poses != moment.poses;
+        let scene = &self.scene.scene;
+        let moved = |before: &Moment| changes(scene, before, moment) != Changes::default();
         if self.fallback_prepared.as_ref().is_none_or(moved) {
             fallback.prepare(&mut self.frame, &self.scene)?;
             self.fallback_prepared = Some(moment.clone());
@@ -283,13 +295,18 @@ impl Engine {
     }
 
     fn times(&self, recorded: &Recorded, recording: &Recording) -> FrameTimes {
-        let passes = recorded.passes[recording.passes.clone()].to_vec();
-        let begin = passes.first().map_or(0.0, |p| p.begin_ms);
-        let end = passes.last().map_or(0.0, |p| p.begin_ms + p.gpu_ms);
+        let of = |range: &Range<usize>| &recorded.passes[range.clone()];
+        let span = |passes: &[PassTime]| {
+            let mut gpu = passes.iter().filter(|pass| pass.cpu_ms == 0.0);
+            let first = gpu.next();
+            let last = gpu.next_back().or(first);
+            first.zip(last).map_or(0.0, |(a, b)| b.begin_ms + b.gpu_ms - a.begin_ms)
+        };
+        let (scene, passes) = (of(&recording.scene), of(&recording.passes));
         FrameTimes {
-            prepare: recorded.passes[recording.prepare.clone()].to_vec(),
-            passes,
-            frame_gpu_ms: end - begin,
+            prepare: of(&recording.prepare).to_vec(),
+            passes: [scene, passes].concat(),
+            frame_gpu_ms: span(scene) + span(passes),
             prepare_bytes: self.prepare_bytes,
             counters: Vec::new(),
         }
@@ -366,9 +383,9 @@ fn parts(
 /// What moved between two moments. Light and environment do not move yet.
 fn changes(scene: &Scene, before: &Moment, now: &Moment) -> Changes {
     let mut changed = Changes::default();
-    for (object, (a, b)) in before.poses.iter().zip(&now.poses).enumerate() {
-        if a != b {
-            let mirror = scene.is_reflector(object as ObjectId);
+    for object in 0..scene.objects.len() as ObjectId {
+        if scene.has_moved(object, before, now) {
+            let mirror = scene.is_reflector(object);
             changed.reflectors |= mirror;
             changed.objects |= !mirror;
         }

@@ -29,13 +29,22 @@ pub(super) struct Runner<'p, P> {
     warm_up: Vec<FrameTimes>,
     steady: bool,
     bursts: Vec<Burst>,
+    /// The frame played last.
+    played: Option<u32>,
     /// Wall time spent playing.
     pub seconds: f64,
 }
 
 impl<'p, P: Player> Runner<'p, P> {
     pub fn new(player: &'p mut P) -> Self {
-        Runner { player, warm_up: Vec::new(), steady: false, bursts: Vec::new(), seconds: 0.0 }
+        Runner {
+            player,
+            warm_up: Vec::new(),
+            steady: false,
+            bursts: Vec::new(),
+            played: None,
+            seconds: 0.0,
+        }
     }
 
     /// Plays the beginning of the list until the times are steady, for half of the cap at most;
@@ -57,8 +66,20 @@ impl<'p, P: Player> Runner<'p, P> {
         Ok(length)
     }
 
-    pub fn play(&mut self, round: usize, chunk: &[Moment], plan: &TimingPlan) -> Result<()> {
+    /// Plays a part of the path. Where its frame before, if it has one, is not what was played last, that
+    /// is played first, untimed: a method that goes on from frame to frame is then timed doing so.
+    pub fn play(
+        &mut self,
+        round: usize,
+        before: Option<&Moment>,
+        chunk: &[Moment],
+        plan: &TimingPlan,
+    ) -> Result<()> {
         let begun = Instant::now();
+        if let Some(before) = before.filter(|before| self.played != Some(before.frame)) {
+            self.player.burst(std::slice::from_ref(before))?;
+        }
+        self.played = chunk.last().map(|moment| moment.frame);
         let times = self.player.burst(chunk)?;
         self.seconds += begun.elapsed().as_secs_f64();
         let frames = chunk.iter().map(|moment| moment.frame).zip(times).collect();

@@ -17,7 +17,8 @@ use crate::scene::Moment;
 
 /// What plays frames: an engine, or a test's stand-in.
 pub trait Player {
-    /// Draws consecutive frames without reading back; one set of times a frame.
+    /// Draws consecutive frames without reading back; one set of times a frame. The first may follow the
+    /// last of the call before.
     fn burst(&mut self, moments: &[Moment]) -> Result<Vec<FrameTimes>>;
 }
 
@@ -77,6 +78,8 @@ pub(super) const NARROW: f64 = 0.03;
 /// Rounds after which intervals are looked at first; then each time there are half as many more.
 /// Few looks, so that no interval is stopped at for being narrow by chance.
 const FIRST_LOOK: usize = 8;
+/// So many frames at least are played in the order of the path before another part of it is.
+const STRETCH_FRAMES: usize = 8;
 
 /// Times all players over the same list of frames. `tick` hears the share of the work done, 0 to 1.
 ///
@@ -108,9 +111,9 @@ fn play<P: Player>(
     plan: &TimingPlan,
     tick: &mut dyn FnMut(f64),
 ) -> Result<()> {
-    let chunks: Vec<&[Moment]> = moments.chunks(length).collect();
-    let order = spread_order(chunks.len());
-    let rounds = plan.repeat.map(|repeat| repeat as usize * chunks.len());
+    let chunks = moments.len().div_ceil(length);
+    let order = stretch_order(chunks, STRETCH_FRAMES.div_ceil(length));
+    let rounds = plan.repeat.map(|repeat| repeat as usize * chunks);
     let mut random = SplitMix64::new(plan.seed);
     let mut enough = vec![false; runners.len()];
     let mut next_look = FIRST_LOOK;
@@ -125,7 +128,10 @@ fn play<P: Player>(
         }
         random.shuffle(&mut turn);
         for i in turn {
-            runners[i].play(round, chunks[order[round % chunks.len()]], plan)?;
+            let first = order[round % chunks] * length;
+            let last = (first + length).min(moments.len());
+            let before = first.checked_sub(1).map(|before| &moments[before]);
+            runners[i].play(round, before, &moments[first..last], plan)?;
         }
         if round + 1 == next_look && rounds.is_none() {
             enough = look(runners, plan);
@@ -158,6 +164,13 @@ fn look<P: Player>(runners: &[Runner<P>], plan: &TimingPlan) -> Vec<bool> {
 
 pub(super) fn is_narrow(median: f64, [low, high]: [f64; 2]) -> bool {
     high - low <= 2.0 * NARROW * median
+}
+
+/// An order of 0..n by stretches of `length` in a row: what must be played before a stretch, so that
+/// none of it begins cold, is then little.
+fn stretch_order(n: usize, length: usize) -> Vec<usize> {
+    let stretches = spread_order(n.div_ceil(length)).into_iter();
+    stretches.flat_map(|stretch| (stretch * length..n).take(length)).collect()
 }
 
 /// An order of 0..n whose every beginning is spread evenly over the whole: ranks of the multiples
@@ -214,7 +227,9 @@ pub(super) mod tests {
             near: 0.1,
             far: 10.0,
         };
-        (0..n).map(|frame| Moment { frame, camera, poses: Vec::new() }).collect()
+        (0..n)
+            .map(|frame| Moment { frame, time: frame as f32, camera, poses: Vec::new() })
+            .collect()
     }
 
     pub fn plan(repeat: Option<u32>) -> TimingPlan {
@@ -249,9 +264,37 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn every_timed_frame_follows_the_one_before_it() {
+        for (frame_ms, repeat) in [(0.01, None), (3.0, Some(2)), (300.0, Some(2))] {
+            let mut players = fakes(&[frame_ms, frame_ms]);
+            let mut plan = plan(repeat);
+            plan.cap = Duration::from_millis(200);
+            let timings = measure(&mut players, &moments(45), &plan, &mut |_| ()).unwrap();
+            for (player, timing) in players.iter().zip(&timings) {
+                let played = &player.played[timing.warm_up.len()..];
+                let led = played.len() - timing.frames().count();
+                assert!(led <= timing.frames().count() / 4, "{led} untimed of {}", played.len());
+                let timed: Vec<u32> = timing.frames().map(|(frame, _)| *frame).collect();
+                let mut next = 0;
+                for (i, frame) in played.iter().enumerate() {
+                    if timed.get(next) == Some(frame) {
+                        let before = i.checked_sub(1).map(|before| played[before]);
+                        // The path's own beginning follows nothing.
+                        assert!(*frame == 0 || before == Some(frame - 1), "{before:?} {frame}");
+                        next += 1;
+                    }
+                }
+                assert_eq!(next, timed.len());
+            }
+        }
+    }
+
+    #[test]
     fn orders_are_permutations_whose_beginnings_are_spread() {
-        for n in [1, 2, 7, 64] {
-            let mut order = spread_order(n);
+        for (n, length) in [(1, 1), (2, 1), (7, 3), (64, 8), (64, 1)] {
+            let mut order = stretch_order(n, length);
+            let steps = order.windows(2).filter(|pair| pair[1] != pair[0] + 1).count();
+            assert!(steps < n.div_ceil(length), "{n} by {length}: {order:?}");
             order.sort_unstable();
             assert!(order.into_iter().eq(0..n));
         }

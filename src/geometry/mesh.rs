@@ -36,18 +36,21 @@ impl Mesh {
     /// Whether it has an inside: every edge borders as many triangles in one direction as in the
     /// other, vertices of equal position taken as one.
     pub fn is_closed(&self) -> bool {
-        // Adding zero makes one zero of both.
-        let place =
-            |vertex: u32| (self.positions[vertex as usize] + 0.0).to_array().map(f32::to_bits);
         let mut surplus: HashMap<_, i32> = HashMap::new();
         for triangle in &self.triangles {
-            let [a, b, c] = triangle.map(place);
+            let [a, b, c] = triangle.map(|vertex| self.place(vertex));
             for (from, to) in [(a, b), (b, c), (c, a)] {
                 let (edge, turn) = if from < to { ((from, to), 1) } else { ((to, from), -1) };
                 *surplus.entry(edge).or_default() += turn;
             }
         }
         !self.triangles.is_empty() && surplus.values().all(|&turns| turns == 0)
+    }
+
+    /// The bits of a vertex's position: equal where two vertices are at one place.
+    pub(super) fn place(&self, vertex: u32) -> [u32; 3] {
+        // Adding zero makes one zero of both.
+        (self.positions[vertex as usize] + 0.0).to_array().map(f32::to_bits)
     }
 
     /// The mesh enlarged about the origin. `factor` is positive, so normals stay.

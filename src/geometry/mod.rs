@@ -19,6 +19,7 @@ pub mod sphere_map;
 pub mod subdivide;
 pub mod texel_line;
 pub mod tree;
+pub mod wave;
 pub mod wide_tree;
 
 pub use camera::{Camera, Projection};

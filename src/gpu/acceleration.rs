@@ -1,7 +1,7 @@
 //! Acceleration structures: what the device's own ray queries search.
 //!
-//! Two levels, as Vulkan has them: one structure a mesh, built once from its triangles in object
-//! space, and one over the meshes where they stand, built anew when they move. No face is culled.
+//! Two levels, as Vulkan has them: one structure a mesh, built from its triangles in object space,
+//! again only where they change, and one over the meshes where they stand, built anew when they move. No face is culled.
 //! Unless a placement is opaque, a shader sees every candidate and accepts or refuses it by its own
 //! rule: a mirrored ray must not meet the triangle it starts on.
 
@@ -296,23 +296,45 @@ impl Drop for Level {
 impl Pass<'_> {
     /// Build every mesh of a structure.
     pub fn build(self, structure: &mut Acceleration) -> Result<()> {
+        let all: Vec<usize> = (0..structure.levels.meshes.len()).collect();
+        self.build_meshes(structure, &all)
+    }
+
+    /// Build some meshes anew whose vertices have changed, by their positions in the list the structure
+    /// was made from.
+    ///
+    /// # Errors
+    /// [`Error::Shader`] where the structure has not been built or has no such mesh.
+    pub fn rebuild(self, structure: &mut Acceleration, meshes: &[usize]) -> Result<()> {
+        let count = structure.levels.meshes.len();
+        if structure.state == State::Empty || meshes.iter().any(|&mesh| mesh >= count) {
+            return Err(self.wrong(format_args!(
+                "`{}` has {count} meshes, built or not: {meshes:?} cannot be built anew",
+                structure.name
+            )));
+        }
+        self.build_meshes(structure, meshes)
+    }
+
+    fn build_meshes(self, structure: &mut Acceleration, meshes: &[usize]) -> Result<()> {
         let device = self.frame.device().clone();
         let rays = device.ray_query()?;
         let levels = &structure.levels;
         let align = |bytes: u64| bytes.next_multiple_of(rays.scratch_alignment);
-        let total = levels.meshes.iter().map(|level| align(level.scratch)).sum();
+        let total = meshes.iter().map(|&mesh| align(levels.meshes[mesh].scratch)).sum();
         let name = format!("{} scratch", structure.name);
         let scratch = Buffer::scratch(&device, &name, total, rays.scratch_alignment)?;
         let mut free = align(scratch.address());
-        let mut infos = Vec::with_capacity(levels.meshes.len());
-        for ((geometry, _), level) in structure.triangles.iter().zip(&levels.meshes) {
+        let mut infos = Vec::with_capacity(meshes.len());
+        for &mesh in meshes {
+            let ((geometry, _), level) = (&structure.triangles[mesh], &levels.meshes[mesh]);
             let scratch = vk::DeviceOrHostAddressKHR { device_address: free };
             let info = build_info(geometry).dst_acceleration_structure(level.raw);
             infos.push(info.scratch_data(scratch));
             free += align(level.scratch);
         }
         let ranges: Vec<_> =
-            structure.triangles.iter().map(|(_, range)| slice::from_ref(range)).collect();
+            meshes.iter().map(|&mesh| slice::from_ref(&structure.triangles[mesh].1)).collect();
         self.frame.keep(scratch.owner.clone());
         self.frame.keep(levels.clone());
         self.record(None, |pass| {

@@ -6,8 +6,8 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocation;
 
-use super::Device;
 use super::command::run_once;
+use super::{Device, Pass};
 use crate::error::{Error, Result};
 
 /// A buffer and its memory.
@@ -75,20 +75,22 @@ impl Buffer {
         // Vulkan knows no empty buffer, and shaders bind whole words.
         let size = (bytes.len() as u64).max(16);
         let buffer = Self::storage(device, name, size)?;
-        let staging = Self::new(
-            device,
-            &format!("{name} staging"),
-            size,
-            vk::BufferUsageFlags::TRANSFER_SRC,
-            MemoryLocation::CpuToGpu,
-        )?;
-        staging.write(0, bytes)?;
+        let staging = Self::staging(device, name, bytes)?;
         run_once(device, name, |commands| {
             let region = vk::BufferCopy::default().size(size);
-            // SAFETY: both buffers are `size` bytes long and alive until `run_once` has waited.
+            // SAFETY: both buffers are `size` bytes long or longer and alive until `run_once` has waited.
             unsafe { device.raw.cmd_copy_buffer(commands, staging.raw, buffer.raw, &[region]) };
         })?;
         Ok(buffer)
+    }
+
+    /// Host-visible memory with `bytes` to be copied into the buffer `name`.
+    fn staging(device: &Arc<Device>, name: &str, bytes: &[u8]) -> Result<Buffer> {
+        let usage = vk::BufferUsageFlags::TRANSFER_SRC;
+        let (name, size) = (format!("{name} staging"), (bytes.len() as u64).max(16));
+        let staging = Self::new(device, &name, size, usage, MemoryLocation::CpuToGpu)?;
+        staging.write(0, bytes)?;
+        Ok(staging)
     }
 
     /// Host-visible memory that a frame's uniforms and small arrays are written into.
@@ -205,6 +207,36 @@ impl Buffer {
             unsafe { device.raw.cmd_copy_buffer(commands, self.raw, target.raw, &[region]) };
         })?;
         target.contents()
+    }
+}
+
+impl Pass<'_> {
+    /// Copy an array into a buffer from byte `offset` on: what changes from frame to frame in a buffer
+    /// that was made with [`Buffer::with_data`].
+    ///
+    /// # Errors
+    /// [`Error::Shader`] where the array is empty or reaches beyond the buffer, [`Error::Device`] where
+    /// memory is out.
+    pub fn copy<T: bytemuck::Pod>(self, buffer: &Buffer, offset: u64, data: &[T]) -> Result<()> {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        let length = bytes.len() as u64;
+        if length == 0 || offset + length > buffer.bytes {
+            return Err(self.wrong(format_args!(
+                "{length} bytes do not go at {offset} into `{}` of {} bytes",
+                buffer.name, buffer.bytes
+            )));
+        }
+        let device = self.frame.device().clone();
+        let staging = Buffer::staging(&device, &buffer.name, bytes)?;
+        self.frame.keep(staging.owner.clone());
+        self.frame.keep(buffer.owner.clone());
+        self.record(None, |pass| {
+            let region = vk::BufferCopy::default().dst_offset(offset).size(length);
+            let (commands, from, to) = (pass.frame.commands, staging.raw, buffer.raw);
+            // SAFETY: recording; both ranges are inside their buffers, which the frame keeps.
+            unsafe { device.raw.cmd_copy_buffer(commands, from, to, &[region]) };
+            Ok(())
+        })
     }
 }
 

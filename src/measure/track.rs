@@ -14,8 +14,8 @@ use super::field::Target;
 use super::judge::{Court, DEPTH_TOLERANCE, at};
 use super::mirrors::{Key, Mirrors};
 use super::root::centre;
-use crate::scene::{Lobe, Moment, NO_OBJECT, ObjectId};
-use crate::truth::Chain;
+use crate::scene::{Lobe, NO_OBJECT, ObjectId};
+use crate::truth::{Chain, Tracer};
 
 /// About so many points are followed at a time: of more pixels, every second or third is.
 const POINTS: f32 = 16384.0;
@@ -31,27 +31,42 @@ enum Spot {
         object: ObjectId,
         local: Vec3,
     },
+    /// A point of a surface that changes its shape: on a triangle, by the weights of the second and
+    /// third corner.
+    Wobbling {
+        object: ObjectId,
+        triangle: u32,
+        barycentrics: Vec2,
+    },
     Sky {
         direction: Vec3,
     },
 }
 
 impl Spot {
-    fn shown_by(chain: &Chain, moment: &Moment) -> Spot {
+    fn shown_by(chain: &Chain, tracer: &Tracer) -> Spot {
         match &chain.shown {
+            Some(hit) if tracer.scene().wobbles(hit.object) => Spot::Wobbling {
+                object: hit.object,
+                triangle: hit.triangle,
+                barycentrics: tracer.barycentrics(hit),
+            },
             Some(hit) => {
-                let from_world = moment.poses[hit.object as usize].inverse();
+                let from_world = tracer.moment().poses[hit.object as usize].inverse();
                 Spot::Surface { object: hit.object, local: from_world.transform_point3(hit.point) }
             }
             None => Spot::Sky { direction: chain.last().outgoing },
         }
     }
 
-    /// The world's point (w = 1) or direction (w = 0) at a moment.
-    fn at(&self, moment: &Moment) -> Vec4 {
+    /// The world's point (w = 1) or direction (w = 0) at a tracer's moment.
+    fn at(&self, tracer: &Tracer) -> Vec4 {
         match *self {
             Spot::Surface { object, local } => {
-                moment.poses[object as usize].transform_point3(local).extend(1.0)
+                tracer.moment().poses[object as usize].transform_point3(local).extend(1.0)
+            }
+            Spot::Wobbling { object, triangle, barycentrics } => {
+                tracer.point_on(object, triangle, barycentrics).extend(1.0)
             }
             Spot::Sky { direction } => direction.extend(0.0),
         }
@@ -60,7 +75,7 @@ impl Spot {
     /// The object; [`NO_OBJECT`] for the sky.
     fn object(&self) -> ObjectId {
         match *self {
-            Spot::Surface { object, .. } => object,
+            Spot::Surface { object, .. } | Spot::Wobbling { object, .. } => object,
             Spot::Sky { .. } => NO_OBJECT,
         }
     }
@@ -81,9 +96,9 @@ pub(super) struct Track {
 }
 
 impl Track {
-    fn begin(chain: &Chain, pixel: UVec2, moment: &Moment) -> Track {
-        let spot = Spot::shown_by(chain, moment);
-        let (chain, point) = (chain.clone(), spot.at(moment));
+    fn begin(chain: &Chain, pixel: UVec2, tracer: &Tracer) -> Track {
+        let spot = Spot::shown_by(chain, tracer);
+        let (chain, point) = (chain.clone(), spot.at(tracer));
         Track { spot, chain, at: centre(pixel), before: None, point }
     }
 
@@ -104,7 +119,7 @@ impl Track {
         let last = UVec2::from(size).as_vec2() - 0.5;
         let expected = self.before.map_or(self.at, |before| 2.0 * self.at - before);
         let expected = expected.clamp(Vec2::splat(0.5), last);
-        let point = self.spot.at(court.tracer.moment());
+        let point = self.spot.at(court.tracer);
         let query =
             court.query(Mirrors::of(&self.chain), Target::new(point), expected, LONGEST_STEP_PX)?;
         let root = query.root(queue).filter(|&root| inside(root))?;
@@ -165,7 +180,7 @@ impl Tracks {
             let Some(chain) = &court.chains[pixel] else { continue };
             let pixel = at(court.truth.size, pixel);
             if taken.insert(pixel / stride) {
-                self.live.push(Track::begin(chain, pixel, court.tracer.moment()));
+                self.live.push(Track::begin(chain, pixel, court.tracer));
                 self.parents.push(None);
             }
         }

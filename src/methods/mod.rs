@@ -57,9 +57,9 @@ pub struct Want<'a> {
 /// What a method needs to be told about again when it moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Changes {
-    /// Poses of diffuse objects.
+    /// Poses and shapes of diffuse objects.
     pub objects: bool,
-    /// Poses of reflectors.
+    /// Poses and shapes of reflectors.
     pub reflectors: bool,
     /// Light and environment.
     pub shading: bool,

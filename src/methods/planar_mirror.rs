@@ -72,7 +72,7 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
 
 /// The plane of a flat reflector: unit normal, and its dot product with the plane's points.
 fn plane(scene: &Scene, moment: &Moment, object: ObjectId) -> Result<(Vec3, f32)> {
-    let mesh = scene.mesh_of(object);
+    let mesh = scene.mesh_at(moment, object);
     let pose = &moment.poses[object as usize];
     let normal = pose.transform_vector3(mesh.normals[0]).normalize();
     let points = || mesh.positions.iter().map(|&p| pose.transform_point3(p));

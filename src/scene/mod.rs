@@ -11,6 +11,9 @@ mod motion;
 pub mod record;
 mod select;
 pub mod shading;
+mod wobble;
+
+use std::collections::BTreeMap;
 
 use glam::{Affine3A, Vec2, Vec3};
 
@@ -20,6 +23,7 @@ pub use library::{SCENES_VARIABLE, list, load, scenes_dir};
 pub use material::{Environment, Glass, Image, Lighting, Material, Mirror, Pattern};
 pub use record::{FrameRecord, Ids, Lobe, ReflectionRecord, Source, Status};
 pub use select::matches_pattern;
+pub use wobble::Wobble;
 
 /// Index into [`Scene::objects`]; also what the images of object ids hold.
 pub type ObjectId = u32;
@@ -41,7 +45,10 @@ pub struct Scene {
     pub rate_hz: f32,
     pub camera: CameraPath,
     pub objects: Vec<Object>,
+    /// As modelled; [`Scene::mesh_at`] has them as they are at a moment.
     pub meshes: Vec<Mesh>,
+    /// What changes the shape of meshes, by their index.
+    pub wobbles: BTreeMap<usize, Wobble>,
     pub materials: Vec<Material>,
     pub images: Vec<Image>,
     pub environment: Environment,
@@ -63,7 +70,7 @@ pub struct Object {
     pub closed: Option<usize>,
     /// Index into [`Scene::materials`].
     pub material: usize,
-    /// The closed form the mesh approximates, in object space, where there is one.
+    /// The closed form the mesh approximates, in object space, where there is one at all times.
     pub surface: Option<Surface>,
     pub motion: Motion,
 }
@@ -136,10 +143,12 @@ pub enum CameraPath {
     Orbit { camera: Camera, start: f32, period: f32, sweep: Option<f32> },
 }
 
-/// One frame of a scene: camera and object poses.
+/// One frame of a scene: camera, object poses, and the time that waves on surfaces go by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
     pub frame: u32,
+    /// Frames since the start of the animation.
+    pub time: f32,
     pub camera: Camera,
     /// World from object space, one an object.
     pub poses: Vec<Affine3A>,
@@ -150,6 +159,7 @@ impl Scene {
         &self.materials[self.objects[object as usize].material]
     }
 
+    /// An object's mesh as modelled: at rest, where it wobbles.
     pub fn mesh_of(&self, object: ObjectId) -> &Mesh {
         &self.meshes[self.objects[object as usize].mesh]
     }
@@ -166,7 +176,12 @@ impl Scene {
 
     /// Whether any object moves.
     pub fn moves(&self) -> bool {
-        self.objects.iter().any(|object| !matches!(object.motion, Motion::Still(_)))
+        (0..self.objects.len() as ObjectId).any(|object| self.is_moving(object))
+    }
+
+    /// Whether an object's pose or surface changes over time.
+    pub fn is_moving(&self, object: ObjectId) -> bool {
+        !matches!(self.objects[object as usize].motion, Motion::Still(_)) || self.wobbles(object)
     }
 
     /// The reflectors that light leaves by a lobe, in rising order.

@@ -1,4 +1,4 @@
-//! A scene at one moment: the camera and every object's pose.
+//! A scene at one moment: the camera, every object's pose, and what has moved since another.
 
 use glam::{Affine3A, Quat, Vec3};
 
@@ -8,12 +8,23 @@ use crate::geometry::Camera;
 impl Scene {
     /// The scene at a frame. Orbits go on beyond the last frame, key frames hold.
     pub fn at(&self, frame: u32) -> Moment {
-        let time = frame as f32;
+        self.at_time(frame, frame as f32)
+    }
+
+    /// The scene at a time between frames, which counts as frame number `frame`.
+    pub fn at_time(&self, frame: u32, time: f32) -> Moment {
         Moment {
             frame,
+            time,
             camera: self.camera.at(time),
             poses: self.objects.iter().map(|object| object.motion.at(time)).collect(),
         }
+    }
+
+    /// Whether an object's pose or surface is another at `now` than at `before`.
+    pub fn has_moved(&self, object: ObjectId, before: &Moment, now: &Moment) -> bool {
+        let pose = |moment: &Moment| moment.poses[object as usize];
+        pose(before) != pose(now) || before.time != now.time && self.wobbles(object)
     }
 
     /// The box around all objects at a moment: smallest and largest world coordinates. A scene
@@ -42,7 +53,7 @@ impl Scene {
         moment: &Moment,
         object: ObjectId,
     ) -> impl Iterator<Item = [Vec3; 3]> {
-        let (mesh, pose) = (self.mesh_of(object), moment.poses[object as usize]);
+        let (mesh, pose) = (self.mesh_at(moment, object), moment.poses[object as usize]);
         (0..mesh.triangles.len())
             .map(move |index| mesh.corners(index).map(|corner| pose.transform_point3(corner)))
     }
@@ -62,7 +73,8 @@ impl Scene {
     /// The world box of one object at a moment.
     pub fn object_bounds(&self, moment: &Moment, object: ObjectId) -> (Vec3, Vec3) {
         let pose = moment.poses[object as usize];
-        let world = self.mesh_of(object).positions.iter().map(|&p| pose.transform_point3(p));
+        let mesh = self.mesh_at(moment, object);
+        let world = mesh.positions.iter().map(|&p| pose.transform_point3(p));
         let empty = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         world.fold(empty, |(low, high), p| (low.min(p), high.max(p)))
     }

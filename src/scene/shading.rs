@@ -107,6 +107,7 @@ mod tests {
                 surface: None,
                 motion: Motion::Still(Affine3A::IDENTITY),
             }],
+            wobbles: Default::default(),
             meshes: vec![Mesh::default()],
             materials: vec![Material {
                 name: "only".to_owned(),

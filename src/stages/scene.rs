@@ -1,4 +1,5 @@
-//! The scene on the GPU: geometry, materials and images once, poses each frame.
+//! The scene on the GPU: geometry, materials and images once, poses and what changes its shape each
+//! frame.
 
 use std::sync::Arc;
 
@@ -104,6 +105,8 @@ pub struct GpuScene {
     images: Buffer,
     texels: Buffer,
     light: LightUniform,
+    /// First vertex of each mesh.
+    first_vertices: Vec<u32>,
     /// First index and index count of each mesh.
     ranges: Vec<(u32, u32)>,
     /// Whether each mesh has an inside.
@@ -120,9 +123,11 @@ impl GpuScene {
         let mut vertices = Vec::with_capacity(scene.meshes.iter().map(|m| m.positions.len()).sum());
         let mut indices: Vec<u32> = Vec::new();
         let mut ranges = Vec::with_capacity(scene.meshes.len());
+        let mut first_vertices = Vec::with_capacity(scene.meshes.len());
         for mesh in &scene.meshes {
             let base = vertices.len() as u32;
             let first = indices.len() as u32;
+            first_vertices.push(base);
             vertices.extend(Vertex::of(mesh));
             indices.extend(mesh.triangles.iter().flatten().map(|i| i + base));
             ranges.push((first, indices.len() as u32 - first));
@@ -136,6 +141,7 @@ impl GpuScene {
             images: Buffer::with_data(device, "scene images", &images)?,
             texels: Buffer::with_data(device, "scene texels", &texels)?,
             light: light_uniform(scene),
+            first_vertices,
             ranges,
             closed: scene.meshes.iter().map(Mesh::is_closed).collect(),
             moment: scene.at(0),
@@ -149,10 +155,19 @@ impl GpuScene {
         &self.moment
     }
 
-    /// Upload the poses of a moment for the frame being recorded.
+    /// Upload the poses of a moment for the frame being recorded, and the vertices of what wobbles:
+    /// those the truth traces, so displaced on the processor (`scene/deform`) and copied
+    /// (`scene/vertices`).
     pub fn pose(&mut self, frame: &mut Frame, moment: &Moment) -> Result<()> {
         self.moment = moment.clone();
         self.objects = Some(self.upload_objects(frame, &[])?);
+        for (&mesh, wobble) in &self.scene.wobbles {
+            let vertices: Vec<Vertex> = frame.cpu("scene/deform", || {
+                Ok(Vertex::of(&wobble.at(&self.scene.meshes[mesh], moment.time)).collect())
+            })?;
+            let offset = u64::from(self.first_vertices[mesh]) * size_of::<Vertex>() as u64;
+            frame.pass("scene/vertices").copy(&self.vertices, offset, &vertices)?;
+        }
         Ok(())
     }
 

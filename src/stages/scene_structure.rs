@@ -9,7 +9,8 @@ use crate::error::Result;
 use crate::gpu::{Acceleration, Device, Frame, Pass, Placement};
 use crate::scene::ObjectId;
 
-/// One structure a mesh, built once, and one over the objects, built anew when they move.
+/// One structure a mesh, built once or whenever its shape changes, and one over the objects, built anew
+/// when they move.
 pub struct SceneStructure {
     device: Arc<Device>,
     built: Option<Acceleration>,
@@ -38,7 +39,13 @@ impl SceneStructure {
         };
         let placements: Vec<_> = (0..).zip(&scene.moment().poses).map(place).collect();
         let structure = match &mut self.built {
-            Some(structure) => structure,
+            Some(structure) => {
+                let wobbling: Vec<usize> = scene.scene.wobbles.keys().copied().collect();
+                if !wobbling.is_empty() {
+                    frame.pass(&format!("{owner}/build")).rebuild(structure, &wobbling)?;
+                }
+                structure
+            }
             built => {
                 let meshes = scene.meshes();
                 let most = placements.len() as u32;

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::geometry::tree::{Node, Tree};
 use crate::geometry::wide_tree::{WideNode, WideTree};
 use crate::gpu::{Buffer, ComputePipeline, Device, Frame, Pass};
-use crate::scene::{Moment, Motion, ObjectId, Scene};
+use crate::scene::{Moment, ObjectId, Scene};
 
 /// Buffers an array is cut into where one would be beyond the device's limit.
 const PARTS: usize = 4;
@@ -205,7 +205,7 @@ impl SceneTree {
     ) -> Result<Option<(Buffer, Vec<Run>)>> {
         let moves = |triangle: u32| {
             let (object, _) = owners[triangle as usize];
-            !matches!(scene.objects[object as usize].motion, Motion::Still(_))
+            scene.is_moving(object)
         };
         let slots = tree.order.iter().zip(0..).filter(|(triangle, _)| moves(**triangle));
         let mut list: Vec<u32> = slots.map(|(_, slot)| slot).collect();

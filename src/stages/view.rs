@@ -139,7 +139,8 @@ pub struct View<'a> {
     pub reflectors: &'a [ObjectId],
     /// The lobe of theirs that the record is for.
     pub lobe: Lobe,
-    /// The last call was not for the frame before this one: what was learnt from it is void.
+    /// The last call was neither for the frame before this one nor for this one: what was learnt from it
+    /// is void.
     pub cut: bool,
 }
 

@@ -110,4 +110,19 @@ impl<'s> Tracer<'s> {
     ) -> Option<Hit> {
         self.surfaces.at(object, triangle, point, incident)
     }
+
+    /// The weights of the second and third corner at a point that was met on a triangle.
+    pub fn barycentrics(&self, hit: &Hit) -> glam::Vec2 {
+        self.surfaces.barycentrics(hit.object, hit.triangle, hit.point)
+    }
+
+    /// Where on a triangle of the scene such weights are at this moment.
+    pub fn point_on(
+        &self,
+        object: ObjectId,
+        triangle: u32,
+        barycentrics: glam::Vec2,
+    ) -> glam::Vec3 {
+        self.surfaces.point(object, triangle, barycentrics)
+    }
 }

@@ -1,14 +1,15 @@
 //! The scene's surfaces at one moment, in world space, and where rays meet them.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use glam::{Affine3A, Vec2, Vec3};
 
 use super::shape::Shape;
 use super::{Bounce, Shapes};
-use crate::geometry::Ray;
 use crate::geometry::bvh::Bvh;
 use crate::geometry::optics::face_forward;
+use crate::geometry::{Mesh, Ray};
 use crate::scene::{Moment, ObjectId, Scene};
 
 /// A point of a surface, met by a ray.
@@ -36,6 +37,8 @@ pub struct Hit {
 pub(super) struct Surfaces<'s> {
     scene: &'s Scene,
     poses: Vec<Affine3A>,
+    /// The scene's, as they are at the moment.
+    meshes: Vec<Cow<'s, Mesh>>,
     bvh: Bvh,
     /// Object and triangle of each triangle in the tree.
     owners: Vec<(ObjectId, u32)>,
@@ -65,8 +68,8 @@ impl<'s> Surfaces<'s> {
             }
             ranges.push(first..owners.len() as u32);
         }
-        let poses = moment.poses.clone();
-        Surfaces { scene, poses, bvh: Bvh::new(&triangles), owners, ranges, shapes }
+        let (poses, meshes) = (moment.poses.clone(), scene.meshes_at(moment));
+        Surfaces { scene, poses, meshes, bvh: Bvh::new(&triangles), owners, ranges, shapes }
     }
 
     /// The nearest surface along `ray` within `range` metres; `from` is where the ray leaves a
@@ -120,25 +123,41 @@ impl<'s> Surfaces<'s> {
             return Some(self.met(surface, &ray, surface.normal.dot(incident) < 0.0));
         }
         self.scene.objects.get(object as usize)?;
-        let mesh = self.scene.mesh_of(object);
-        let corners = mesh.triangles.get(triangle as usize)?;
+        let mesh = self.mesh(object);
+        mesh.triangles.get(triangle as usize)?;
+        let [a, b, c] = mesh.corners(triangle as usize);
+        let facing = self.poses[object as usize].transform_vector3((b - a).cross(c - a));
+        let surface =
+            self.interpolate(object, triangle, self.barycentrics(object, triangle, point));
+        Some(self.met(surface, &ray, facing.dot(incident) < 0.0))
+    }
+
+    /// The weights of the second and third corner at a point of a triangle.
+    pub fn barycentrics(&self, object: ObjectId, triangle: u32, point: Vec3) -> Vec2 {
         let local = self.poses[object as usize].inverse().transform_point3(point);
-        let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize]);
+        let [a, b, c] = self.mesh(object).corners(triangle as usize);
         let (ab, ac, ap) = (b - a, c - a, local - a);
         let normal = ab.cross(ac);
         let area = normal.length_squared();
         // The point may lie beside the triangle; what is meant is its nearest point.
         let v = (ap.cross(ac).dot(normal) / area).clamp(0.0, 1.0);
         let w = (ab.cross(ap).dot(normal) / area).clamp(0.0, 1.0 - v);
-        let facing = self.poses[object as usize].transform_vector3(normal);
-        let surface = self.interpolate(object, triangle, Vec2::new(v, w));
-        Some(self.met(surface, &ray, facing.dot(incident) < 0.0))
+        Vec2::new(v, w)
+    }
+
+    /// Where on a triangle such weights are now.
+    pub fn point(&self, object: ObjectId, triangle: u32, barycentrics: Vec2) -> Vec3 {
+        self.interpolate(object, triangle, barycentrics).point
+    }
+
+    fn mesh(&self, object: ObjectId) -> &Mesh {
+        &self.meshes[self.scene.objects[object as usize].mesh]
     }
 
     /// A point of a triangle from the weights of its second and third corner, as the rasteriser
     /// interpolates it.
     fn interpolate(&self, object: ObjectId, triangle: u32, barycentrics: Vec2) -> SurfacePoint {
-        let mesh = self.scene.mesh_of(object);
+        let mesh = self.mesh(object);
         let pose = &self.poses[object as usize];
         let [a, b, c] = mesh.triangles[triangle as usize].map(|corner| corner as usize);
         let Vec2 { x: v, y: w } = barycentrics;

@@ -9,16 +9,18 @@ use toml::Spanned;
 use super::camera;
 use super::format::{
     EnvironmentFile, KeyFile, LightingFile, MaterialFile, ObjectFile, ScatterFile, SceneFile,
-    ShapeFile, Span,
+    ShapeFile, Span, WobbleFile,
 };
 use super::image::decode;
 use super::parts::{PartMaterial, parts};
 use super::scatter::{Placement, placements};
 use super::source::Source;
 use super::values::{Positive, Triple, colour, triple};
+use super::wobble::wobble;
 use crate::error::Result;
 use crate::scene::{
     Environment, Glass, Image, Lighting, Material, Mirror, Motion, Object, Pattern, Scene, Surface,
+    Wobble,
 };
 
 /// The materials of the file, by name.
@@ -31,8 +33,9 @@ pub struct Builder {
     images: Vec<Image>,
     materials: Vec<Material>,
     meshes: Vec<crate::geometry::Mesh>,
+    wobbles: BTreeMap<usize, Wobble>,
     objects: Vec<Object>,
-    /// Shapes already made, by their text and scale: what two objects share is stored once.
+    /// Shapes already made, by their text, scale and wobble: what two objects share is stored once.
     made: HashMap<String, Vec<MadePart>>,
 }
 
@@ -53,6 +56,7 @@ pub fn build(name: String, source: Source, file: SceneFile) -> Result<Scene> {
         images: Vec::new(),
         materials: Vec::new(),
         meshes: Vec::new(),
+        wobbles: BTreeMap::new(),
         objects: Vec::new(),
         made: HashMap::new(),
     };
@@ -80,6 +84,7 @@ pub fn build(name: String, source: Source, file: SceneFile) -> Result<Scene> {
         camera,
         objects: builder.objects,
         meshes: builder.meshes,
+        wobbles: builder.wobbles,
         materials: builder.materials,
         images: builder.images,
         environment,
@@ -222,8 +227,10 @@ impl Builder {
         scale: f32,
         motion: Motion,
     ) -> Result<()> {
-        let closed = file.closed.as_ref().map(|shape| self.closed(shape, scale)).transpose()?;
-        for part in self.make(&file.shape, scale)? {
+        let wobble = file.wobble.as_ref();
+        let closed = file.closed.as_ref().map(|shape| self.closed(shape, scale, wobble));
+        let closed = closed.transpose()?;
+        for part in self.make(&file.shape, scale, wobble)? {
             let name = match &part.name {
                 Some(part) => format!("{group}.{}", part.replace(|c| !is_name_character(c), "-")),
                 None => group.to_owned(),
@@ -261,8 +268,13 @@ impl Builder {
     }
 
     /// The mesh of a closed partner.
-    fn closed(&mut self, shape: &Spanned<ShapeFile>, scale: f32) -> Result<usize> {
-        match self.make(shape, scale)?.as_slice() {
+    fn closed(
+        &mut self,
+        shape: &Spanned<ShapeFile>,
+        scale: f32,
+        wobble: Option<&Spanned<WobbleFile>>,
+    ) -> Result<usize> {
+        match self.make(shape, scale, wobble)?.as_slice() {
             [one] => Ok(one.mesh),
             _ => {
                 let message = "closed has several parts; valid: a shape of one part";
@@ -272,16 +284,27 @@ impl Builder {
     }
 
     /// The meshes of a shape, from the store where an equal one was made before.
-    fn make(&mut self, shape: &Spanned<ShapeFile>, scale: f32) -> Result<Vec<MadePart>> {
-        let key = format!("{scale} {}", &self.source.text()[shape.span()]);
+    fn make(
+        &mut self,
+        shape: &Spanned<ShapeFile>,
+        scale: f32,
+        wobbling: Option<&Spanned<WobbleFile>>,
+    ) -> Result<Vec<MadePart>> {
+        let text = |span: Span| &self.source.text()[span];
+        let waves = wobbling.map_or("", |wobble| text(wobble.span()));
+        let key = format!("{scale} {} {waves}", text(shape.span()));
         if let Some(made) = self.made.get(&key) {
             return Ok(made.clone());
         }
         let mut made = Vec::new();
         for part in parts(&mut self.source, shape.get_ref(), &shape.span())? {
-            self.meshes.push(part.mesh.scaled(scale));
-            let surface = part.surface.map(|surface| surface.scaled(scale));
-            let mesh = self.meshes.len() - 1;
+            let (mesh, shape) = (self.meshes.len(), part.mesh.scaled(scale));
+            let mut surface = part.surface.map(|surface| surface.scaled(scale));
+            if let Some(file) = wobbling {
+                self.wobbles.insert(mesh, wobble(&self.source, file, &shape, self.rate_hz)?);
+                surface = None;
+            }
+            self.meshes.push(shape);
             made.push(MadePart { name: part.name, mesh, surface, material: part.material });
         }
         self.made.insert(key, made.clone());

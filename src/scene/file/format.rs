@@ -187,9 +187,25 @@ pub struct ObjectFile {
     pub position: Option<Triple>,
     pub rotation_deg: Option<Triple>,
     pub scale: Option<Positive>,
+    pub wobble: Option<Spanned<WobbleFile>>,
     pub orbit: Option<OrbitFile>,
     pub keys: Option<Vec<Spanned<KeyFile>>>,
     pub scatter: Option<Spanned<ScatterFile>>,
+}
+
+/// A wave that travels over an object's surface.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WobbleFile {
+    pub amplitude: Positive,
+    pub wavelength: Positive,
+    pub period_s: Positive,
+    #[serde(default = "upwards")]
+    pub towards: Triple,
+}
+
+fn upwards() -> Triple {
+    [Finite(0.0), Finite(1.0), Finite(0.0)]
 }
 
 /// Copies of an object in random places.
@@ -316,6 +332,8 @@ pub struct RevolutionFile {
     /// (radius, height) from the bottom to the top where the outside is away from the axis.
     pub profile: Vec<[Finite; 2]>,
     pub curve: CurveKind,
+    #[serde(default = "full_turn")]
+    pub sweep_deg: Turn,
     pub edge: Option<Positive>,
     pub slices: Option<Slices>,
     pub stacks: Option<Stacks>,

@@ -12,6 +12,7 @@ mod scatter;
 mod smooth;
 mod source;
 mod values;
+mod wobble;
 
 use std::path::{Path, PathBuf};
 

@@ -9,6 +9,7 @@ use super::format::{
     ShapeFile, Span, SphereFile, TorusFile,
 };
 use super::source::Source;
+use super::values::Turn;
 use super::{obj, patches};
 use crate::error::Result;
 use crate::geometry::Mesh;
@@ -140,13 +141,16 @@ fn torus_part(file: &TorusFile, steps: &Steps) -> Result<Part> {
             steps.error(format!("tube = {tube} is out of range; valid: below ring = {ring}"))
         );
     }
-    // Exactly a full turn closes the surface.
-    let degrees = file.sweep_deg.0;
-    let angle = if degrees < 360.0 { degrees.to_radians() } else { TAU };
+    let angle = sweep_angle(file.sweep_deg);
     let slices = steps.arc(ring + tube, angle, edge, file.slices.map(|s| s.0), SLICES)?;
     let stacks = steps.arc(tube, TAU, edge, file.stacks.map(|s| s.0), STACKS)?;
     let surface = (angle == TAU).then_some(Surface::Torus { ring, tube });
     Ok(whole(torus(ring, tube, stacks, Sweep { slices, angle }), surface))
+}
+
+/// Radians; exactly a full turn closes the surface.
+fn sweep_angle(Turn(degrees): Turn) -> f32 {
+    if degrees < 360.0 { degrees.to_radians() } else { TAU }
 }
 
 fn revolution_mesh(file: &RevolutionFile, steps: &Steps) -> Result<Mesh> {
@@ -158,9 +162,10 @@ fn revolution_mesh(file: &RevolutionFile, steps: &Steps) -> Result<Mesh> {
     }
     let widest = points.iter().fold(0.0, |widest: f32, p| widest.max(p.x));
     let edge = file.edge.map(|e| e.0);
-    let slices = steps.arc(widest, TAU, edge, file.slices.map(|s| s.0), SLICES)?;
+    let angle = sweep_angle(file.sweep_deg);
+    let slices = steps.arc(widest, angle, edge, file.slices.map(|s| s.0), SLICES)?;
     let profile = profile(file, &points, steps)?;
-    let mesh = revolution(&profile, Sweep::full(slices));
+    let mesh = revolution(&profile, Sweep { slices, angle });
     if mesh.triangles.is_empty() {
         return Err(steps.error("profile encloses no area; valid: radii above 0"));
     }
