@@ -6,6 +6,7 @@ tested without a Vulkan device. A mirror sphere on a chequered floor among diffu
 import argparse
 import json
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -141,6 +142,19 @@ def ball(size: int) -> dict[str, dict[str, np.ndarray]]:
     return layers
 
 
+def gbuffer(case: str, width: int, height: int, frame: int) -> dict[str, dict[str, np.ndarray]]:
+    """The mirror's points and normals, by name, in textures of the width the case names."""
+    if named := re.search(r"texture=(\d+)", case):
+        width, height = int(named[1]), int(named[1]) * height // width
+    drawn = draw(case, width, height, frame)
+    mask = (drawn["reflector.id"] == MIRROR).astype(np.float32)
+    images = {"position": mask, "normal": 0 * mask}
+    return {
+        name: {c: drawn[f"{name}.{axis}"] for c, axis in zip("RGB", "XYZ", strict=True)} | {"A": alpha}
+        for name, alpha in images.items()
+    }
+
+
 def save(path: Path, layers: dict[str, np.ndarray]) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
@@ -229,8 +243,10 @@ def main() -> int:
     for case in args.case or []:
         if args.command == "render":
             save(args.out / f"frame-{args.frame:04}.exr", draw(case, *size, args.frame))
-            if args.dump == "environment-map/ball":
-                for name, layers in ball(64).items():
+            images = {"environment-map/ball": lambda: ball(64)}
+            images["virtual-objects/gbuffer"] = lambda: gbuffer(case, *size, args.frame)
+            if args.dump in images:
+                for name, layers in images[args.dump]().items():
                     save(args.out / "dump" / args.dump / f"{name}.exr", layers)
             if args.dump == "environment-map/capture":
                 save(args.out / "dump" / args.dump / "radiance.exr", cube(128))
