@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import OpenEXR
+from PIL import Image
 
 CENTRE, RADIUS = np.array([0.0, 1.0, 0.0]), 1.0
 NO_OBJECT = 0xFFFFFFFF
@@ -155,6 +156,13 @@ def gbuffer(case: str, width: int, height: int, frame: int) -> dict[str, dict[st
     }
 
 
+def filmed(cases: list[str], width: int, height: int, frame: int) -> Image.Image:
+    """A film's picture: the cases side by side."""
+    drawn = [draw(case, width, height, frame) for case in cases]
+    panels = [np.stack([layers[c] for c in "RGB"], -1) for layers in drawn]
+    return Image.fromarray((255 * np.clip(np.concatenate(panels, 1), 0, 1)).astype(np.uint8))
+
+
 def save(path: Path, layers: dict[str, np.ndarray]) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
@@ -226,6 +234,8 @@ def main() -> int:
     parser.add_argument("--dump", default="")
     parser.add_argument("--frames", default="0..1")
     parser.add_argument("--path", action="store_true")
+    parser.add_argument("--film", type=Path)
+    parser.add_argument("--beside", action="append", default=[])
     for ignored in ("--repeat", "--record", "--truth-frames", "--fallback"):
         parser.add_argument(ignored)
     parser.add_argument("--json", action="store_true")
@@ -252,6 +262,10 @@ def main() -> int:
                 save(args.out / "dump" / args.dump / "radiance.exr", cube(128))
             if args.dump == "z-buffered-map/capture":
                 save(args.out / "dump" / args.dump / "surface.exr", depths(128))
+        if args.film:
+            first, end = (int(n) for n in args.frames.split(".."))
+            pictures = [filmed([case, *args.beside], *size, frame) for frame in range(first, end)]
+            pictures[0].save(args.film, save_all=True, append_images=pictures[1:])
         timed = args.command == "bench"
         answer = row(args.scene, case, size, args.frame, timed, args.case[0])
         answer["run"] = f"toy-{len(case)}"
