@@ -1,7 +1,7 @@
 // One reflector's points and normals as the eye sees them: T_P and T_N of Estalella et al. 2006,
 // section 4.
 #import bindings::surface::{Surface, surface_vertex}
-#import common::camera::{Camera, arriving, facing}
+#import common::camera::{Camera, arriving}
 
 @group(0) @binding(30) var<uniform> camera: Camera;
 
@@ -21,8 +21,22 @@ struct Texel {
     @location(1) normal: vec4<f32>,
 }
 
+// The largest cosine between eye ray and normal that is the rim of a surface seen from outside.
+const RIM: f32 = 0.25;
+
+// The normal on the eye's side. Interpolated ones may turn from the eye just at the rim: turned round they
+// would mirror what is behind the reflector, so they are turned back to where the eye ray grazes.
+fn seen_normal(in: vec3<f32>, incident: vec3<f32>) -> vec3<f32> {
+    let n = normalize(in);
+    let away = dot(n, incident);
+    if away <= 0.0 {
+        return n;
+    }
+    return select(-n, normalize(n - away * incident), away < RIM);
+}
+
 @fragment
 fn fragment(in: Surface) -> Texel {
-    let normal = facing(in.normal, arriving(camera, in.position));
+    let normal = seen_normal(in.normal, arriving(camera, in.position));
     return Texel(vec4(in.position, 1.0), vec4(normal, 0.0));
 }

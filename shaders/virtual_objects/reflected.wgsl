@@ -1,20 +1,40 @@
 enable primitive_index;
 // The virtual objects of one reflector, drawn through its stencil; each fragment carries the scene
 // point it shows (Estalella et al. 2006, section 3).
+#import bindings::record::{RecordTargets, record_targets}
 #import bindings::scene::objects
 #import bindings::surface::{Surface, surface_colour, surface_vertex}
-#import common::camera::Camera
-#import common::record::{found_chain, packed_ids, packed_radiance}
+#import common::record::found_chain
+#import virtual_objects::corner::{Corner, HIDDEN, status_of}
+#import virtual_objects::residual::{
+    camera, displacement, reflector_id, reflector_position
+}
 
-@group(0) @binding(0) var<uniform> reflector: u32;
-// V' of each vertex, world; the fourth is 1 where the vertex is hidden.
-@group(0) @binding(1) var<storage, read> virtual_vertices: array<vec4<f32>>;
+struct Reflected {
+    reflector: u32,
+    // Vertices of the scene.
+    vertices: u32,
+    // Pixels a fragment may be from where it belongs without a flag; 0: none are flagged.
+    residual: f32,
+    pad: u32,
+}
+@group(0) @binding(0) var<uniform> reflected: Reflected;
+@group(0) @binding(1) var<storage, read> corners: array<Corner>;
 // The scene's triangle each triangle lies in, and where each object's begin.
 @group(0) @binding(2) var<storage, read> source_triangles: array<u32>;
 @group(0) @binding(3) var<storage, read> first_triangles: array<u32>;
-@group(0) @binding(30) var<uniform> camera: Camera;
-@group(0) @binding(31) var reflector_id: texture_2d<u32>;
-@group(0) @binding(32) var reflector_position: texture_2d<f32>;
+#ifdef HIDDEN_CLIP
+@group(0) @binding(4) var<storage, read> owners: array<u32>;
+@group(0) @binding(5) var<storage, read> source_indices: array<u32>;
+
+// See split.wgsl.
+struct Drawn {
+    arguments: vec4<u32>,
+    made: vec4<u32>,
+    triangles: array<vec4<u32>>,
+}
+@group(0) @binding(6) var<storage, read> drawn: Drawn;
+#endif
 
 struct VirtualSurface {
     @builtin(position) clip: vec4<f32>,
@@ -27,25 +47,45 @@ struct VirtualSurface {
     @location(4) hidden: f32,
 }
 
+#ifdef HIDDEN_CLIP
+// A corner's own surface: a vertex, or what lies between its triangle's vertices.
+fn corner_surface(corner: u32, source: u32, object: u32) -> Surface {
+    if corner < reflected.vertices {
+        return surface_vertex(corner, object);
+    }
+    let weights = vec2<f32>(vec2(corners[corner].weights & 0xffffu, corners[corner].weights >> 16u))
+        / 32768.0;
+    let a = surface_vertex(source_indices[3u * source], object);
+    let b = surface_vertex(source_indices[3u * source + 1u], object);
+    let c = surface_vertex(source_indices[3u * source + 2u], object);
+    var out = a;
+    out.position = corners[corner].position;
+    out.normal += weights.x * (b.normal - a.normal) + weights.y * (c.normal - a.normal);
+    out.uv += weights.x * (b.uv - a.uv) + weights.y * (c.uv - a.uv);
+    return out;
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> VirtualSurface {
+    let t = drawn.triangles[index / 3u];
+    let object = owners[source_indices[3u * t.w]];
+    let corner = t[index % 3u];
+    let source = corner_surface(corner, t.w, object);
+    let clip = camera.clip_from_world * vec4(corners[corner].image, 1.0);
+    return VirtualSurface(clip, source.position, source.normal, source.uv, object, 0.0);
+}
+#else
 @vertex
 fn vertex(
     @builtin(vertex_index) index: u32,
     @builtin(instance_index) object: u32,
 ) -> VirtualSurface {
     let source = surface_vertex(index, object);
-    let image = virtual_vertices[index];
-    let clip = camera.clip_from_world * vec4(image.xyz, 1.0);
-    return VirtualSurface(clip, source.position, source.normal, source.uv, object, image.w);
+    let clip = camera.clip_from_world * vec4(corners[index].image, 1.0);
+    let hidden = select(0.0, 1.0, status_of(corners[index]) == HIDDEN);
+    return VirtualSurface(clip, source.position, source.normal, source.uv, object, hidden);
 }
-
-struct Reflected {
-    @location(0) radiance: vec4<f32>,
-#ifdef RECORD_FULL
-    @location(1) point: vec4<f32>,
-    @location(2) last: vec4<f32>,
-    @location(3) ids: vec4<u32>,
 #endif
-}
 
 // All three corners are hidden where the share of hidden corners is 1, but for rounding.
 const ALL_HIDDEN: f32 = 0.9999;
@@ -55,10 +95,10 @@ fn fragment(
     in: VirtualSurface,
     @builtin(primitive_index) primitive: u32,
     @builtin(front_facing) front: bool,
-) -> Reflected {
+) -> RecordTargets {
     let pixel = vec2<u32>(in.clip.xy);
     // Two reflectors may share a stencil value; the id image decides.
-    if textureLoad(reflector_id, pixel, 0).x != reflector {
+    if textureLoad(reflector_id, pixel, 0).x != reflected.reflector {
         discard;
     }
 #ifndef TWO_SIDED
@@ -75,15 +115,15 @@ fn fragment(
     let bounce = textureLoad(reflector_position, pixel, 0).xyz;
     let source = Surface(in.clip, in.position, in.normal, in.uv, in.object);
     let colour = surface_colour(source, in.position - bounce);
-    let rank = objects[reflector].rank;
+    let rank = objects[reflected.reflector].rank;
+#ifdef HIDDEN_CLIP
+    let triangle = source_triangles[drawn.triangles[primitive].w];
+#else
     let triangle = source_triangles[first_triangles[in.object] + primitive];
-    let chain = found_chain(colour, in.position, bounce, in.object, triangle, rank);
-    var out: Reflected;
-    out.radiance = packed_radiance(chain);
-#ifdef RECORD_FULL
-    out.point = chain.point;
-    out.last = chain.last;
-    out.ids = packed_ids(chain);
 #endif
-    return out;
+    var chain = found_chain(colour, in.position, bounce, in.object, triangle, rank);
+    if reflected.residual > 0.0 {
+        chain.flag = displacement(pixel, in.position) > reflected.residual;
+    }
+    return record_targets(chain);
 }

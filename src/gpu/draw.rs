@@ -169,4 +169,13 @@ impl Draw<'_> {
         // SAFETY: recording inside a rendering scope.
         unsafe { raw.cmd_draw(commands, count, 1, 0, 0) };
     }
+
+    /// Vertices the shader makes itself, as many as four words at the start of `arguments` say: vertices,
+    /// instances, the first of each.
+    pub fn vertices_indirect(&mut self, arguments: &Buffer) {
+        self.frame.keep(arguments.owner.clone());
+        let (raw, commands) = (&self.frame.device.raw, self.frame.commands);
+        // SAFETY: recording inside a rendering scope; the kept buffer holds at least 16 bytes.
+        unsafe { raw.cmd_draw_indirect(commands, arguments.raw, 0, 1, 0) };
+    }
 }

@@ -182,6 +182,18 @@ impl<'f> Pass<'f> {
         self
     }
 
+    /// A struct as read-only storage. For a struct that loops depend on: lavapipe (Mesa 22.3) copies such
+    /// uniforms into the shader it compiles, and crashes over some.
+    pub fn storage_struct<T: bytemuck::Pod>(mut self, name: &'static str, value: &T) -> Self {
+        match self.frame.upload(std::slice::from_ref(value)) {
+            Ok(slice) => self.slice(name, slice),
+            Err(e) => {
+                self.error = self.error.or(Some(e));
+                self
+            }
+        }
+    }
+
     /// The binding added last is bound only where the shader has the variable: for groups of
     /// variables (the scene, the record) of which a shader uses some.
     pub fn optional(mut self) -> Self {

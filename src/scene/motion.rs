@@ -47,6 +47,18 @@ impl Scene {
             .map(move |index| mesh.corners(index).map(|corner| pose.transform_point3(corner)))
     }
 
+    /// The world positions of an object's vertices at a moment, or of the closed partner it has.
+    pub fn closed_points_of(
+        &self,
+        moment: &Moment,
+        object: ObjectId,
+    ) -> impl Iterator<Item = Vec3> + Clone {
+        let pose = moment.poses[object as usize];
+        let closed = self.objects[object as usize].closed.map(|mesh| &self.meshes[mesh]);
+        let mesh = closed.unwrap_or_else(|| self.mesh_of(object));
+        mesh.positions.iter().map(move |&p| pose.transform_point3(p))
+    }
+
     /// The world box of one object at a moment.
     pub fn object_bounds(&self, moment: &Moment, object: ObjectId) -> (Vec3, Vec3) {
         let pose = moment.poses[object as usize];

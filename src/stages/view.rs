@@ -1,7 +1,7 @@
 //! One view: what a method is given besides the scene.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, Vec2, Vec3, Vec4Swizzles};
+use glam::{Mat4, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::{DirectView, Footprint};
 use crate::error::Result;
@@ -23,6 +23,11 @@ pub struct CameraUniform {
     up: [f32; 3],
     half_height: f32,
 }
+
+/// Tangent of the widest half angle a fitted camera opens to.
+const WIDEST: f32 = 4.0;
+/// What a fitted camera shows beyond the points, as a share.
+const MARGIN: f32 = 0.01;
 
 impl CameraUniform {
     /// World position of the eye.
@@ -61,6 +66,59 @@ impl CameraUniform {
             column[1] /= factor;
         }
         self
+    }
+
+    /// A camera at the same eye that shows some world points as large as it can. `None` where one of
+    /// them is beside or behind the eye.
+    pub fn fitted(&self, points: impl Iterator<Item = Vec3> + Clone) -> Option<CameraUniform> {
+        let parallel = self.orthographic == 1;
+        let eye = self.eye();
+        let (low, high) = points
+            .clone()
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
+        let centre = 0.5 * (low + high);
+        let own_forward = Vec3::from_array(self.forward);
+        let forward = if parallel { own_forward } else { (centre - eye).try_normalize()? };
+        let [own_right, own_up] = [self.right, self.up].map(Vec3::from_array);
+        // Looking along the view's own up, its forward is as good.
+        let hint = if forward.cross(own_up).length() > 0.1 { own_up } else { own_forward };
+        let right = forward.cross(hint).try_normalize().unwrap_or(own_right);
+        let up = right.cross(forward);
+        // Parallel rays may start anywhere.
+        let origin = if parallel { centre - forward * (centre - eye).dot(forward) } else { eye };
+        let (mut half, mut near, mut far) = (Vec2::ZERO, f32::INFINITY, 0.0f32);
+        for point in points {
+            let away = point - origin;
+            let depth = away.dot(forward);
+            let across = Vec2::new(away.dot(right), away.dot(up)).abs();
+            let across = if parallel { across } else { across / depth.max(1e-9) };
+            (half, near, far) = (half.max(across), near.min(depth), far.max(depth));
+        }
+        if near <= 0.0 || half.max_element() > WIDEST {
+            return None;
+        }
+        half = (half * (1.0 + MARGIN)).max(Vec2::splat(1e-6));
+        (near, far) = (near * (1.0 - MARGIN), far * (1.0 + MARGIN));
+        let depth = (near - far).recip();
+        // Rows of clip from world, reversed depth, y down.
+        let row = |axis: Vec3| axis.extend(-axis.dot(origin));
+        let ahead = row(forward);
+        let (z, w) = if parallel {
+            (depth * ahead - far * depth * Vec4::W, Vec4::W)
+        } else {
+            (near * (depth * ahead - far * depth * Vec4::W), ahead)
+        };
+        let rows = Mat4::from_cols(row(right) / half.x, -row(up) / half.y, z, w);
+        Some(CameraUniform {
+            clip_from_world: rows.transpose().to_cols_array_2d(),
+            eye: origin.to_array(),
+            forward: forward.to_array(),
+            right: right.to_array(),
+            half_width: half.x,
+            up: up.to_array(),
+            half_height: half.y,
+            ..*self
+        })
     }
 
     /// Where world points are on the image, -1 to 1, y down; `None` behind the eye.

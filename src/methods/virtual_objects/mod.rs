@@ -2,28 +2,41 @@
 //! and the scene so reflected is drawn through the stencil (Estalella, Martin, Drettakis & Tost 2006,
 //! "A GPU-driven algorithm for accurate interactive reflections on curved objects").
 //!
-//! Choices the paper leaves to us are parameters. Two more: a texel outside the reflector is never
-//! better than one on it, and a search whose first texel the reflector has left starts from the middle.
+//! `@published`: a walk over texels, starting where the frame before ended. Choices the paper leaves to us
+//! are parameters. Two more: a texel outside the reflector is never better than one on it, and a search
+//! whose first texel the reflector has left starts from the middle. Two choices decide whether there is a
+//! picture at all: triangles with three hidden vertices are left out, and back faces are culled. What lies
+//! hidden behind the reflector lands all round its silhouette, so a surface that crosses the hidden region
+//! is torn open in its middle, and a triangle there is stretched over the whole mirror, before the rest.
 //!
-//! Two choices decide whether there is a picture at all: triangles with three hidden vertices are left
-//! out, and back faces are culled. What lies hidden behind the reflector lands all round its
-//! silhouette, so a surface that crosses the hidden region is torn open in its middle, and a triangle
-//! there is stretched over the whole mirror, before the rest.
+//! `@revised`: textures that show all of the reflector, searches from coarse to fine that end between
+//! texels and remember nothing, hidden parts cut off along the reflector's shadow volume, triangles halved
+//! where their middles are drawn in the wrong place, and a flag where the law of reflection is broken.
 
 mod params;
+mod pyramid;
+mod rule;
 mod search;
 mod source;
+mod split;
 #[cfg(test)]
 mod tests;
 
-use crate::error::Result;
-use crate::gpu::{Attachments, Depth, Format, Frame, GraphicsPipeline, Load, Stencil};
-use crate::scene::ObjectId;
-use crate::stages::{Footprint, GBuffer, GpuScene, MirroredEnvironment, ReflectionRecord, View};
+use bytemuck::{Pod, Zeroable};
 
-use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Values, Want};
+use crate::error::Result;
+use crate::gpu::{Attachments, Depth, Frame, GraphicsPipeline, Load, Stencil};
+use crate::scene::ObjectId;
+use crate::stages::{
+    CameraUniform, Footprint, GBuffer, GpuScene, MirroredEnvironment, RecordMode, ReflectionRecord,
+    View,
+};
+
+use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
+use rule::Rule;
 use search::{Found, Mirror, Search};
 use source::{Lists, Source};
+use split::Split;
 
 pub const INFO: MethodInfo = MethodInfo {
     id: "virtual-objects",
@@ -31,12 +44,12 @@ pub const INFO: MethodInfo = MethodInfo {
     paper: "Estalella, Martin, Drettakis & Tost 2006",
     family: Family::FeedForward,
     depends: Changes { objects: false, reflectors: false, shading: false },
-    flags: false,
+    flags: true,
     refracts: false,
-    variants: &["published"],
+    variants: &["published", "revised"],
     params: params::PARAMS,
-    limits: "one reflection a vertex and reflector, so convex reflectors; one bounce; straight between \
-             vertices",
+    limits: "one reflection a vertex and reflector, so convex reflectors; one bounce; @published: straight \
+             between vertices",
     passes: &[
         "virtual-objects/subdivide",
         "footprint/clear-list",
@@ -44,21 +57,34 @@ pub const INFO: MethodInfo = MethodInfo {
         "virtual-objects/background",
         "virtual-objects/gbuffer",
         "virtual-objects/start",
+        "virtual-objects/cells",
         "virtual-objects/search",
+        "virtual-objects/clear",
+        "virtual-objects/split",
         "virtual-objects/reflected",
     ],
-    counters: &["searches", "steps", "evaluations", "max-steps", "hidden"],
+    counters: &["searches", "steps", "evaluations", "max-steps", "hidden", "halved", "no-room"],
     new: Some(new),
 };
 
+/// WGSL `Reflected` of `shaders/virtual_objects/reflected.wgsl`.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct ReflectedUniform {
+    reflector: ObjectId,
+    vertices: u32,
+    residual: f32,
+    pad: u32,
+}
+
 struct VirtualObjects {
+    rule: Rule,
+    mode: RecordMode,
+    size: [u32; 2],
     environment: MirroredEnvironment,
     gbuffer: GBuffer,
     search: Search,
     reflected: GraphicsPipeline,
-    widening: f32,
-    /// Longest edge of diffuse meshes, metres; 0 as modelled.
-    edge: f32,
     /// What is reflected and where it was found; made by the first `prepare`.
     state: Option<State>,
 }
@@ -66,65 +92,50 @@ struct VirtualObjects {
 struct State {
     source: Source,
     found: Found,
+    /// Where hidden parts are cut off.
+    split: Option<Split>,
 }
 
 fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
-    let (device, values) = (setup.device, setup.values);
+    let &Setup { device, mode, size, .. } = setup;
+    let rule = Rule::new(setup.values);
+    let texels = rule.texture_size(size);
     Ok(Box::new(VirtualObjects {
-        environment: MirroredEnvironment::new(device, setup.mode)?,
-        gbuffer: GBuffer::new(device, texture_size(values, setup.size), format(values))?,
-        search: Search::new(device, values, setup.mode)?,
-        reflected: reflected_pipeline(setup)?,
-        widening: values.f32("widening"),
-        edge: values.f32("subdivide"),
+        environment: MirroredEnvironment::new(device, mode)?,
+        gbuffer: GBuffer::new(device, texels, rule.format)?,
+        search: Search::new(device, &rule, mode, texels)?,
+        reflected: reflected_pipeline(setup, &rule)?,
         state: None,
+        rule,
+        mode,
+        size,
     }))
 }
 
-fn reflected_pipeline(setup: &Setup) -> Result<GraphicsPipeline> {
-    let mode = setup.mode;
-    let mut defines = mode.defines();
-    for (parameter, value, define) in
-        [("cull", "none", "TWO_SIDED"), ("unseen", "draw", "DRAW_HIDDEN")]
-    {
-        if setup.values.is(parameter, value) {
-            defines.push((define, 1));
-        }
-    }
+fn reflected_pipeline(setup: &Setup, rule: &Rule) -> Result<GraphicsPipeline> {
     let attachments = Attachments {
-        colours: mode.formats(),
+        colours: setup.mode.formats(),
         depth_stencil: true,
         depth: Depth::Nearest,
         stencil: Stencil::Within,
     };
     let file = "virtual_objects/reflected.wgsl";
-    GraphicsPipeline::new(setup.device, file, &defines, &attachments)
-}
-
-/// Width and height of the textures: the view's shape, and its size unless one is forced.
-fn texture_size(values: &Values, [width, height]: [u32; 2]) -> [u32; 2] {
-    match values.forced_u32("texture") {
-        None => [width, height],
-        Some(forced) => {
-            let shape = f64::from(height) / f64::from(width);
-            [forced, ((f64::from(forced) * shape).round() as u32).max(1)]
-        }
-    }
-}
-
-fn format(values: &Values) -> Format {
-    if values.is("precision", "fp16") { Format::Rgba16Float } else { Format::Rgba32Float }
+    GraphicsPipeline::new(setup.device, file, &rule.defines(setup.mode), &attachments)
 }
 
 impl ReflectionMethod for VirtualObjects {
     fn prepare(&mut self, frame: &mut Frame, scene: &GpuScene, want: &Want) -> Result<()> {
         if self.state.is_none() {
             let device = frame.device().clone();
+            let edge = self.rule.edge;
             let lists =
-                frame.cpu("virtual-objects/subdivide", || Lists::new(&scene.scene, self.edge))?;
+                frame.cpu("virtual-objects/subdivide", || Lists::new(&scene.scene, edge))?;
             let source = lists.upload(&device)?;
-            let found = Found::new(&device, source.count, want.reflectors.len())?;
-            self.state = Some(State { source, found });
+            let (rule, clips) = (&self.rule, self.rule.clips);
+            let split = clips.then(|| Split::new(&device, rule, self.mode, &source, self.size));
+            let made = if clips { split::corners_made(self.size) } else { 0 };
+            let found = Found::new(&device, source.count, want.reflectors.len(), made)?;
+            self.state = Some(State { source, found, split: split.transpose()? });
         }
         Ok(())
     }
@@ -136,21 +147,41 @@ impl ReflectionMethod for VirtualObjects {
         view: &View,
         record: &mut ReflectionRecord,
     ) -> Result<()> {
-        let Some(state) = &self.state else { return Ok(()) };
+        let Some(State { source, found, split }) = &self.state else { return Ok(()) };
         self.environment.fill(frame, scene, "virtual-objects", view, record)?;
-        let camera = view.camera.widened(self.widening);
         for (place, &object) in view.reflectors.iter().enumerate() {
-            self.gbuffer.draw(frame, scene, "virtual-objects", object, &camera)?;
+            let camera = self.camera(scene, view, object);
             let gbuffer = &self.gbuffer;
-            let mirror = Mirror { object, place, gbuffer, camera: &camera, cut: view.cut };
-            self.search.run(frame, scene, &state.source, &state.found, &mirror, record)?;
-            self.draw(frame, scene, view, record, object, state)?;
+            gbuffer.draw(frame, scene, "virtual-objects", object, &camera)?;
+            let mirror = Mirror {
+                object,
+                place,
+                vertices: source.count,
+                gbuffer,
+                camera: &camera,
+                cut: view.cut,
+            };
+            self.search.run(frame, scene, source, found, &mirror, record)?;
+            if let Some(split) = split {
+                let parts = (source, found, &self.search);
+                split.run(frame, view, parts, &mirror, record)?;
+            }
+            self.draw(frame, scene, view, record, object)?;
         }
         Ok(())
     }
 }
 
 impl VirtualObjects {
+    /// What the textures of a reflector are drawn with.
+    fn camera(&self, scene: &GpuScene, view: &View, object: ObjectId) -> CameraUniform {
+        if !self.rule.fitted {
+            return view.camera.widened(self.rule.widening);
+        }
+        let points = scene.scene.closed_points_of(scene.moment(), object);
+        view.camera.fitted(points).unwrap_or_else(|| view.camera.widened(2.0))
+    }
+
     /// Draw what was found for one reflector into its pixels.
     fn draw(
         &self,
@@ -159,20 +190,37 @@ impl VirtualObjects {
         view: &View,
         record: &ReflectionRecord,
         reflector: ObjectId,
-        State { source, found }: &State,
     ) -> Result<()> {
+        let Some(State { source, found, split }) = &self.state else { return Ok(()) };
+        let reflected = ReflectedUniform {
+            reflector,
+            vertices: source.count,
+            residual: self.rule.residual_px,
+            pad: 0,
+        };
         let pass = frame.pass("virtual-objects/reflected").graphics(&self.reflected);
-        record
+        let mut pass = record
             .attach(view.bind(scene.bind(pass)))
+            .uniform("reflected", &reflected)
             .buffer("vertices", &source.vertices)
-            .buffer("virtual_vertices", &found.vertices)
+            .buffer("corners", &found.corners)
             .buffer("source_triangles", &source.triangles)
             .buffer("first_triangles", &source.first_triangles)
-            .uniform("reflector", &reflector)
-            .depth_stencil(&view.footprint.depth_stencil, Load::Clear([0.0; 4]), Load::Keep)
-            .draw(|draw| {
+            .optional();
+        if let Some(split) = split {
+            pass = pass
+                .buffer("owners", &source.owners)
+                .buffer("source_indices", &source.indices)
+                .buffer("drawn", &split.drawn);
+        }
+        pass.depth_stencil(&view.footprint.depth_stencil, Load::Clear([0.0; 4]), Load::Keep).draw(
+            |draw| {
                 draw.stencil_reference(Footprint::stencil_of(reflector));
-                source.draw(draw, reflector);
-            })
+                match split {
+                    Some(split) => split.draw(draw),
+                    None => source.draw(draw, reflector),
+                }
+            },
+        )
     }
 }

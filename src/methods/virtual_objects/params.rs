@@ -2,19 +2,31 @@
 
 use crate::methods::{Kind, Param};
 
+/// Choices of `hidden` that reflect hidden vertices too.
+const UNCUT: &[&str] = &["half-space", "inverse"];
+const CUT: &[&str] = &["clip"];
+
 pub const PARAMS: &[Param] = &[
+    Param {
+        name: "frustum",
+        kind: Kind::Choice(&["widened", "fitted"]),
+        defaults: &["widened", "fitted"],
+        needs: None,
+        doc: "what the reflector's textures show: the view, widened (5.2); or the reflector, all of it",
+    },
     Param {
         name: "texture",
         kind: Kind::IntegerOrAuto { min: 16, max: 8192 },
         defaults: &["auto"],
         needs: None,
-        doc: "texels across the reflector's textures (unstated); auto: the view's width",
+        doc: "texels across the reflector's textures (unstated); auto: the view's width, half of it where \
+              fitted",
     },
     Param {
         name: "widening",
         kind: Kind::Real { min: 1.0, max: 4.0 },
         defaults: &["1.2"],
-        needs: None,
+        needs: Some(("frustum", &["widened"])),
         doc: "how much more than the view the textures show, across and down (5.2; unstated)",
     },
     Param {
@@ -25,18 +37,39 @@ pub const PARAMS: &[Param] = &[
         doc: "of the textures (\"floating-point\")",
     },
     Param {
+        name: "objective",
+        kind: Kind::Choice(&["dot", "cross"]),
+        defaults: &["dot", "cross"],
+        needs: None,
+        doc: "what a walk seeks: the highest N.B (section 4), or the least |N x B|, which is not flat there",
+    },
+    Param {
         name: "pattern",
         kind: Kind::Choice(&["crosshair", "crosshair-diagonals", "eight"]),
-        defaults: &["crosshair"],
+        defaults: &["crosshair", "eight"],
         needs: None,
         doc: "neighbours looked at: four; the diagonals where none of the four is better; all at once",
     },
     Param {
         name: "start",
-        kind: Kind::Choice(&["previous", "centre"]),
-        defaults: &["previous"],
+        kind: Kind::Choice(&["previous", "centre", "pyramid"]),
+        defaults: &["previous", "pyramid"],
         needs: None,
-        doc: "start from the texel found in the frame before (5.3), or always from the centre",
+        doc: "start from the texel found in the frame before (5.3), from the centre, or coarse to fine",
+    },
+    Param {
+        name: "point",
+        kind: Kind::Choice(&["texel", "newton"]),
+        defaults: &["texel", "newton"],
+        needs: None,
+        doc: "the reflection point: the best texel's, or between texels by Gauss-Newton steps",
+    },
+    Param {
+        name: "image",
+        kind: Kind::Choice(&["mirror", "push"]),
+        defaults: &["mirror", "push"],
+        needs: None,
+        doc: "where a vertex is drawn: mirrored in the plane found, or pushed along the eye ray",
     },
     Param {
         name: "cap",
@@ -49,27 +82,28 @@ pub const PARAMS: &[Param] = &[
         name: "threshold",
         kind: Kind::Real { min: 0.0, max: 1.0 },
         defaults: &["1"],
-        needs: None,
+        needs: Some(("objective", &["dot"])),
         doc: "N.B from which on a texel is good enough; 1: only the best will do, as published",
     },
     Param {
         name: "hidden",
-        kind: Kind::Choice(&["half-space", "inverse"]),
-        defaults: &["half-space"],
+        kind: Kind::Choice(&["half-space", "inverse", "clip"]),
+        defaults: &["half-space", "clip"],
         needs: None,
-        doc: "vertices behind the plane found: use that plane, or search again with roles swapped (5.1)",
+        doc: "vertices behind the plane found: use that plane, or search again with roles swapped (5.1); or \
+              cut off what the reflector's shadow volume holds",
     },
     Param {
         name: "equation",
         kind: Kind::Choice(&["mirror", "printed"]),
         defaults: &["mirror"],
-        needs: None,
+        needs: Some(("hidden", UNCUT)),
         doc: "equation 1, for hidden vertices: as meant, or with the sign slip it is printed with",
     },
     Param {
         name: "cull",
         kind: Kind::Choice(&["back", "none"]),
-        defaults: &["back"],
+        defaults: &["back", "none"],
         needs: None,
         doc: "draw only the sides of virtual triangles that a mirror shows, or both (unstated)",
     },
@@ -77,14 +111,35 @@ pub const PARAMS: &[Param] = &[
         name: "unseen",
         kind: Kind::Choice(&["drop", "draw"]),
         defaults: &["drop"],
-        needs: None,
+        needs: Some(("hidden", UNCUT)),
         doc: "triangles of which all three vertices are hidden: left out, or drawn (unstated)",
     },
     Param {
         name: "subdivide",
         kind: Kind::Real { min: 0.0, max: 1000.0 },
-        defaults: &["0.25"],
+        defaults: &["0.25", "0"],
         needs: None,
         doc: "longest edge of diffuse meshes, metres (section 6; unstated); 0: as modelled",
+    },
+    Param {
+        name: "split_px",
+        kind: Kind::Real { min: 0.0, max: 1000.0 },
+        defaults: &["0.5"],
+        needs: Some(("hidden", CUT)),
+        doc: "pixels an edge's middle may be drawn from its true place before it is halved; 0: never halved",
+    },
+    Param {
+        name: "generations",
+        kind: Kind::Integer { min: 1, max: 14 },
+        defaults: &["10"],
+        needs: Some(("hidden", CUT)),
+        doc: "most times an edge is halved",
+    },
+    Param {
+        name: "residual_px",
+        kind: Kind::Real { min: 0.0, max: 1000.0 },
+        defaults: &["0", "1"],
+        needs: None,
+        doc: "pixels a fragment may break the law of reflection by before it is flagged; 0: none is",
     },
 ];

@@ -1,18 +1,19 @@
-//! The published search: one walk a vertex over the reflector's points and normals (section 4).
+//! Searches: for each vertex of the scene a reflection point (section 4), and what is remembered of it.
 
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec2;
 
+use super::pyramid::Pyramid;
+use super::rule::Rule;
 use super::source::Source;
 use crate::error::Result;
-use crate::gpu::{Buffer, ComputePipeline, Device, Frame};
-use crate::methods::Values;
+use crate::gpu::{Buffer, ComputePipeline, Device, Frame, Pass};
 use crate::scene::ObjectId;
 use crate::stages::{CameraUniform, GBuffer, GpuScene, RecordMode, ReflectionRecord};
 
-/// WGSL `Search` of `shaders/virtual_objects/search.wgsl`.
+/// WGSL `Search` of `shaders/virtual_objects/reflector.wgsl`.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub struct SearchUniform {
@@ -20,10 +21,24 @@ pub struct SearchUniform {
     history: u32,
     cut: u32,
     cap: u32,
+    size: [u32; 2],
     threshold: f32,
     reflector: u32,
+    top: i32,
     pad_a: u32,
     pad_b: u32,
+    pad_c: u32,
+}
+
+/// WGSL `Corner` of `shaders/virtual_objects/corner.wgsl`.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub struct Corner {
+    pub position: [f32; 3],
+    pub weights: u32,
+    pub image: [f32; 3],
+    /// Texel found, in halves: x | y << 14 | status << 28.
+    pub found: u32,
 }
 
 /// WGSL `Middle` of `shaders/virtual_objects/start.wgsl`.
@@ -36,31 +51,32 @@ pub struct MiddleUniform {
 
 /// Pipelines of the search and its rules.
 pub struct Search {
-    start: ComputePipeline,
-    walk: ComputePipeline,
+    /// Finds the first texel, where there is no pyramid to start from.
+    start: Option<ComputePipeline>,
+    pyramid: Option<Pyramid>,
+    vertices: ComputePipeline,
     cap: u32,
     threshold: f32,
-    /// Every frame starts from the middle.
+    /// Every frame starts anew.
     forgets: bool,
 }
 
 /// What searches find.
 pub struct Found {
-    /// V' of each vertex for the reflector searched last, world.
-    pub vertices: Buffer,
+    /// [`Corner`]s: one for each vertex, for the reflector searched last; then those made by cuts.
+    pub corners: Buffer,
     /// x | y << 16 of the texel each search ended at, for one reflector after the other.
     pub texels: Buffer,
     /// Where the searches of the reflector at hand start.
     start: Buffer,
-    /// Vertices of one reflector.
-    count: u32,
 }
 
 /// One reflector to be searched.
 pub struct Mirror<'a> {
     pub object: ObjectId,
-    /// Its place among those whose texels are kept.
+    /// Its place among those whose texels are kept, and how many those are of each.
     pub place: usize,
+    pub vertices: u32,
     pub gbuffer: &'a GBuffer,
     /// The camera the G-buffer was drawn with.
     pub camera: &'a CameraUniform,
@@ -69,40 +85,41 @@ pub struct Mirror<'a> {
 }
 
 impl Found {
-    /// For so many vertices and reflectors.
+    /// For so many vertices and reflectors, and so many corners made beside the vertices.
     ///
     /// # Errors
     /// [`crate::error::Error::Device`] with the numbers when a list is beyond the device's limits.
-    pub fn new(device: &Arc<Device>, count: u32, reflectors: usize) -> Result<Found> {
+    pub fn new(device: &Arc<Device>, count: u32, reflectors: usize, made: u32) -> Result<Found> {
         let bytes = 4 * u64::from(count) * reflectors as u64;
+        let corners = size_of::<Corner>() as u64 * (u64::from(count) + u64::from(made));
         Ok(Found {
-            vertices: Buffer::storage(device, "virtual vertices", 16 * u64::from(count))?,
+            corners: Buffer::storage(device, "reflected corners", corners)?,
             texels: Buffer::storage(device, "search texels", bytes)?,
             start: Buffer::storage(device, "search start", 16)?,
-            count,
         })
     }
 }
 
 impl Search {
-    pub fn new(device: &Arc<Device>, values: &Values, mode: RecordMode) -> Result<Search> {
-        let mut defines = mode.defines();
-        for (parameter, value, define) in [
-            ("pattern", "crosshair-diagonals", "PATTERN_DIAGONALS"),
-            ("pattern", "eight", "PATTERN_EIGHT"),
-            ("hidden", "inverse", "HIDDEN_INVERSE"),
-            ("equation", "printed", "EQUATION_PRINTED"),
-        ] {
-            if values.is(parameter, value) {
-                defines.push((define, 1));
-            }
-        }
+    /// For textures of `texels` texels.
+    ///
+    /// # Errors
+    /// As of pipelines and images.
+    pub fn new(
+        device: &Arc<Device>,
+        rule: &Rule,
+        mode: RecordMode,
+        texels: [u32; 2],
+    ) -> Result<Search> {
+        let pipeline = |file, defines| ComputePipeline::new(device, file, defines);
+        let starts = !rule.starts_at_pyramid;
         Ok(Search {
-            start: ComputePipeline::new(device, "virtual_objects/start.wgsl", &[])?,
-            walk: ComputePipeline::new(device, "virtual_objects/search.wgsl", &defines)?,
-            cap: values.u32("cap"),
-            threshold: values.f32("threshold"),
-            forgets: values.is("start", "centre"),
+            start: starts.then(|| pipeline("virtual_objects/start.wgsl", &[])).transpose()?,
+            pyramid: rule.pyramid.then(|| Pyramid::new(device, texels)).transpose()?,
+            vertices: pipeline("virtual_objects/search.wgsl", &rule.defines(mode))?,
+            cap: rule.cap,
+            threshold: rule.threshold,
+            forgets: rule.forgets,
         })
     }
 
@@ -116,37 +133,53 @@ impl Search {
         mirror: &Mirror,
         record: &ReflectionRecord,
     ) -> Result<()> {
-        let gbuffer = mirror.gbuffer;
-        let texel = middle(scene, mirror);
-        frame
-            .pass("virtual-objects/start")
-            .compute(&self.start)
-            .uniform("middle", &MiddleUniform { texel, pad: [0; 2] })
-            .sample("mirror_position", &gbuffer.position)
-            .buffer("start", &found.start)
-            .over(1)?;
-        let search = SearchUniform {
-            total: found.count,
-            history: found.count * mirror.place as u32,
-            cut: u32::from(mirror.cut || self.forgets),
-            cap: self.cap,
-            threshold: self.threshold,
-            reflector: mirror.object,
-            ..Zeroable::zeroed()
-        };
-        let pass = frame.pass("virtual-objects/search").compute(&self.walk);
-        record
-            .bind_counters(scene.bind(pass))
+        if let Some(start) = &self.start {
+            let texel = middle(scene, mirror);
+            frame
+                .pass("virtual-objects/start")
+                .compute(start)
+                .uniform("middle", &MiddleUniform { texel, pad: [0; 2] })
+                .sample("mirror_position", &mirror.gbuffer.position)
+                .buffer("start", &found.start)
+                .over(1)?;
+        }
+        if let Some(pyramid) = &self.pyramid {
+            pyramid.build(frame, mirror.gbuffer)?;
+        }
+        let pass = frame.pass("virtual-objects/search").compute(&self.vertices);
+        self.bind(record.bind_counters(scene.bind(pass)), mirror)
             .buffer("vertices", &source.vertices)
             .buffer("owners", &source.owners)
-            .uniform("search", &search)
-            .uniform("camera", mirror.camera)
-            .sample("mirror_position", &gbuffer.position)
-            .sample("mirror_normal", &gbuffer.normal)
             .buffer("start", &found.start)
+            .optional()
             .buffer("texels", &found.texels)
-            .buffer("virtual_vertices", &found.vertices)
-            .over(found.count)
+            .optional()
+            .buffer("corners", &found.corners)
+            .over(source.count)
+    }
+
+    /// Bind what searches of a reflector look at.
+    pub fn bind<'f>(&'f self, pass: Pass<'f>, mirror: &Mirror<'f>) -> Pass<'f> {
+        let search = SearchUniform {
+            total: mirror.vertices,
+            history: mirror.vertices * mirror.place as u32,
+            cut: u32::from(mirror.cut || self.forgets),
+            cap: self.cap,
+            size: mirror.gbuffer.size,
+            threshold: self.threshold,
+            reflector: mirror.object,
+            top: self.pyramid.as_ref().map_or(0, Pyramid::top),
+            ..Zeroable::zeroed()
+        };
+        let pass = pass
+            .storage_struct("search", &search)
+            .uniform("camera", mirror.camera)
+            .sample("mirror_position", &mirror.gbuffer.position)
+            .sample("mirror_normal", &mirror.gbuffer.normal);
+        match &self.pyramid {
+            Some(pyramid) => pass.sample("mirror_cells", &pyramid.cells).optional(),
+            None => pass,
+        }
     }
 }
 
@@ -174,8 +207,9 @@ mod tests {
     #[test]
     #[rustfmt::skip]
     fn uniforms_are_laid_out_as_their_wgsl_twins() {
+        assert_layout!("virtual_objects/search.wgsl", "Corner", Corner, position, weights, image, found);
         assert_layout!("virtual_objects/search.wgsl", "Search", SearchUniform,
-            total, history, cut, cap, threshold, reflector, pad_a, pad_b);
+            total, history, cut, cap, size, threshold, reflector, top, pad_a, pad_b, pad_c);
         assert_layout!("virtual_objects/start.wgsl", "Middle", MiddleUniform, texel, pad);
     }
 }

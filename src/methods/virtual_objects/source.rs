@@ -23,7 +23,9 @@ pub struct Source {
     /// Where each object's triangles begin in `triangles`.
     pub first_triangles: Buffer,
     pub count: u32,
-    indices: Buffer,
+    /// Three a triangle, into `vertices`.
+    pub indices: Buffer,
+    pub triangle_count: u32,
     /// First index and index count of each object.
     ranges: Vec<(u32, u32)>,
 }
@@ -87,6 +89,7 @@ impl Lists {
             triangles: Buffer::with_data(device, "reflected triangles", &self.triangles)?,
             first_triangles: Buffer::with_data(device, "reflected objects", &self.first_triangles)?,
             count: self.vertices.len() as u32,
+            triangle_count: self.triangles.len() as u32,
             indices: Buffer::with_data(device, "reflected indices", &self.indices)?,
             ranges: self.ranges.clone(),
         })

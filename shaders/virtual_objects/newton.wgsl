@@ -1,0 +1,137 @@
+// From near a reflection point to the point itself, between texels: Gauss-Newton steps on N x H, H half
+// way between eye and vertex, over points and normals interpolated from four texels.
+#define_import_path virtual_objects::newton
+
+#import common::camera::arriving
+#import virtual_objects::reflector::{camera, evaluations, normal_at, point_at}
+
+// Steps that bring any start within a few texels home; most take three.
+const MOST_STEPS: u32 = 8u;
+// Longest step, texels.
+const REACH: f32 = 8.0;
+// A last step shorter than this, texels, has arrived.
+const ARRIVED: f32 = 0.002;
+// Sine of the largest angle between N and H that counts as a reflection point.
+const LAW: f32 = 2e-3;
+
+struct ReflectionPoint {
+    // In texels, centres at +0.5.
+    place: vec2<f32>,
+    // P and N there.
+    position: vec3<f32>,
+    normal: vec3<f32>,
+    steps: u32,
+    // Whether the law of reflection holds there.
+    found: bool,
+}
+
+// The reflector between four texel centres: P and N at one place, and their slopes a texel.
+struct Patch {
+    whole: bool,
+    p: vec3<f32>,
+    n: vec3<f32>,
+    p_x: vec3<f32>,
+    p_y: vec3<f32>,
+    n_x: vec3<f32>,
+    n_y: vec3<f32>,
+}
+
+fn is_whole(corner: vec2<i32>) -> bool {
+    return point_at(corner).w * point_at(corner + vec2(1, 0)).w
+        * point_at(corner + vec2(0, 1)).w * point_at(corner + vec2(1, 1)).w == 1.0;
+}
+
+// The patch at a place; at the reflector's rim the nearest whole one, carried on.
+fn patch_at(place: vec2<f32>) -> Patch {
+    let g = place - 0.5;
+    let nearest = vec2<i32>(floor(g));
+    var corner = nearest;
+    var out: Patch;
+    out.whole = is_whole(nearest);
+    if !out.whole {
+        var least = 1e9;
+        for (var i = 0; i < 9; i += 1) {
+            let other = nearest + vec2(i % 3 - 1, i / 3 - 1);
+            let away = g - vec2<f32>(other) - 0.5;
+            if dot(away, away) < least && is_whole(other) {
+                least = dot(away, away);
+                corner = other;
+                out.whole = true;
+            }
+        }
+        if !out.whole {
+            return out;
+        }
+    }
+    let f = g - vec2<f32>(corner);
+    let p_00 = point_at(corner).xyz;
+    let p_10 = point_at(corner + vec2(1, 0)).xyz;
+    let p_01 = point_at(corner + vec2(0, 1)).xyz;
+    let p_11 = point_at(corner + vec2(1, 1)).xyz;
+    let n_00 = normal_at(corner);
+    let n_10 = normal_at(corner + vec2(1, 0));
+    let n_01 = normal_at(corner + vec2(0, 1));
+    let n_11 = normal_at(corner + vec2(1, 1));
+    out.p_x = mix(p_10 - p_00, p_11 - p_01, f.y);
+    out.p_y = mix(p_01 - p_00, p_11 - p_10, f.x);
+    out.p = mix(p_00, p_01, f.y) + f.x * out.p_x;
+    // Of unit length up to the square of what they turn by in a texel; their slopes need no more.
+    out.n_x = mix(n_10 - n_00, n_11 - n_01, f.y);
+    out.n_y = mix(n_01 - n_00, n_11 - n_10, f.x);
+    out.n = normalize(mix(n_00, n_01, f.y) + f.x * out.n_x);
+    return out;
+}
+
+// How a unit direction towards a point `away` metres off turns as its start moves by `slope`.
+fn turn(direction: vec3<f32>, away: f32, slope: vec3<f32>) -> vec3<f32> {
+    return (direction * dot(direction, slope) - slope) / away;
+}
+
+// From a place to the reflection point of `v`.
+fn newton(begin: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
+    var out: ReflectionPoint;
+    var place = begin;
+    for (var step = 0u; step < MOST_STEPS; step += 1u) {
+        let at = patch_at(place);
+        if !at.whole {
+            // Beyond the rim: back half way.
+            if step == 0u {
+                break;
+            }
+            place = 0.5 * (place + out.place);
+            continue;
+        }
+        evaluations += 1u;
+        let towards_eye = -arriving(camera, at.p);
+        // Parallel eye rays do not turn.
+        let eye_away = select(distance(camera.eye, at.p), 1e30, camera.orthographic == 1u);
+        let away = max(distance(v, at.p), 1e-9);
+        let towards_v = (v - at.p) / away;
+        let h = towards_eye + towards_v;
+        let law = cross(at.n, h);
+        let h_x = turn(towards_eye, eye_away, at.p_x) + turn(towards_v, away, at.p_x);
+        let h_y = turn(towards_eye, eye_away, at.p_y) + turn(towards_v, away, at.p_y);
+        let j_x = cross(at.n_x, h) + cross(at.n, h_x);
+        let j_y = cross(at.n_y, h) + cross(at.n, h_y);
+        out.place = place;
+        out.position = at.p;
+        out.normal = at.n;
+        out.steps = step + 1u;
+        out.found = dot(law, law) < LAW * LAW * dot(h, h) && dot(at.n, h) > 0.0;
+        let a = dot(j_x, j_x);
+        let b = dot(j_x, j_y);
+        let c = dot(j_y, j_y);
+        // Damped a little, so that a fold does not throw the step.
+        let damping = 1e-5 * (a + c) + 1e-30;
+        let determinant = (a + damping) * (c + damping) - b * b;
+        let g_x = dot(j_x, law);
+        let g_y = dot(j_y, law);
+        var delta = vec2(b * g_y - (c + damping) * g_x, b * g_x - (a + damping) * g_y) / determinant;
+        delta *= min(1.0, REACH / max(length(delta), 1e-9));
+        if length(delta) < ARRIVED {
+            break;
+        }
+        place += delta;
+    }
+    return out;
+}

@@ -1,0 +1,94 @@
+//! A case's parameters, read once.
+
+use crate::gpu::Format;
+use crate::methods::Values;
+use crate::stages::RecordMode;
+
+/// What searches and draws do, and how far.
+pub struct Rule {
+    defines: Vec<(&'static str, u32)>,
+    /// Textures show the reflector, not the view.
+    pub fitted: bool,
+    /// Texels across the textures, where forced.
+    texture: Option<u32>,
+    pub widening: f32,
+    pub format: Format,
+    /// Every frame starts anew.
+    pub forgets: bool,
+    /// Searches go from coarse to fine, or hidden parts are cut: a pyramid is needed.
+    pub pyramid: bool,
+    pub starts_at_pyramid: bool,
+    pub cap: u32,
+    pub threshold: f32,
+    /// Hidden parts are cut off.
+    pub clips: bool,
+    pub split_px: f32,
+    pub generations: u32,
+    pub residual_px: f32,
+    /// Longest edge of diffuse meshes, metres; 0 as modelled.
+    pub edge: f32,
+}
+
+/// Shader definitions that values stand for.
+const DEFINES: &[(&str, &str, &str)] = &[
+    ("objective", "cross", "OBJECTIVE_CROSS"),
+    ("pattern", "crosshair-diagonals", "PATTERN_DIAGONALS"),
+    ("pattern", "eight", "PATTERN_EIGHT"),
+    ("start", "pyramid", "START_PYRAMID"),
+    ("point", "newton", "POINT_NEWTON"),
+    ("image", "push", "IMAGE_PUSH"),
+    ("hidden", "inverse", "HIDDEN_INVERSE"),
+    ("hidden", "clip", "HIDDEN_CLIP"),
+    ("equation", "printed", "EQUATION_PRINTED"),
+    ("cull", "none", "TWO_SIDED"),
+    ("unseen", "draw", "DRAW_HIDDEN"),
+];
+
+impl Rule {
+    pub fn new(values: &Values) -> Rule {
+        let chosen = DEFINES.iter().filter(|(name, value, _)| values.is(name, value));
+        let mut defines: Vec<_> = chosen.map(|&(_, _, define)| (define, 1)).collect();
+        let clips = values.is("hidden", "clip");
+        let starts_at_pyramid = values.is("start", "pyramid");
+        let pyramid = clips || starts_at_pyramid;
+        if pyramid {
+            defines.push(("PYRAMID", 1));
+        }
+        let fp16 = values.is("precision", "fp16");
+        Rule {
+            defines,
+            fitted: values.is("frustum", "fitted"),
+            texture: values.forced_u32("texture"),
+            widening: values.f32("widening"),
+            format: if fp16 { Format::Rgba16Float } else { Format::Rgba32Float },
+            forgets: !values.is("start", "previous"),
+            pyramid,
+            starts_at_pyramid,
+            cap: values.u32("cap"),
+            threshold: values.f32("threshold"),
+            clips,
+            split_px: values.f32("split_px"),
+            generations: values.u32("generations"),
+            residual_px: values.f32("residual_px"),
+            edge: values.f32("subdivide"),
+        }
+    }
+
+    /// For the method's shaders.
+    pub fn defines(&self, mode: RecordMode) -> Vec<(&'static str, u32)> {
+        let mut defines = mode.defines();
+        defines.extend(&self.defines);
+        defines
+    }
+
+    /// Width and height of the textures for a view of that size. Fitted ones are square, and half as
+    /// many texels across as the view's larger side unless forced; the others have the view's shape.
+    pub fn texture_size(&self, [width, height]: [u32; 2]) -> [u32; 2] {
+        if self.fitted {
+            return [self.texture.unwrap_or((width.max(height) / 2).max(16)); 2];
+        }
+        let Some(forced) = self.texture else { return [width, height] };
+        let shape = f64::from(height) / f64::from(width);
+        [forced, ((f64::from(forced) * shape).round() as u32).max(1)]
+    }
+}
