@@ -11,15 +11,19 @@ use tempfile::TempDir;
 
 const SIZE: [usize; 2] = [48, 36];
 
-/// Renders three frames of the columns' truth to a film.
+/// Renders three frames of the columns' truth to a film, unless `more` names others.
 fn film(folder: &Path, name: &str, more: &[&str], search: Option<&Path>) -> Assert {
     let mut command = Command::cargo_bin("mirrorbench").unwrap();
     command.env("MIRRORBENCH_CACHE", env!("CARGO_TARGET_TMPDIR"));
     if let Some(search) = search {
         command.env("PATH", search);
     }
-    let render = ["render", "--scene", "columns", "--case", "truth", "--size", "48x36"];
-    command.args(render).args(["--frames", "4..7", "--out"]).arg(folder);
+    command.args(["render", "--scene", "columns", "--size", "48x36", "--out"]).arg(folder);
+    for usual in [["--case", "truth"], ["--frames", "4..7"]] {
+        if !more.contains(&usual[0]) {
+            command.args(usual);
+        }
+    }
     command.arg("--film").arg(folder.join(name)).args(more).assert()
 }
 
@@ -61,6 +65,8 @@ fn an_animated_png_holds_the_frames() {
         assert!(*picture == frame, "frame {number} differs from its picture in the film");
     }
     assert!(pictures[0] != pictures[2], "the camera moves");
+    let delay_s = delay_s(&folder.path().join("a.png"));
+    assert!((delay_s - 1.0 / 24.0).abs() < 0.0005, "{delay_s} s a picture at 24 Hz");
     assert!(
         fs::read_dir(folder.path())
             .unwrap()
@@ -68,10 +74,37 @@ fn an_animated_png_holds_the_frames() {
     );
 }
 
+/// Seconds each picture of an animated PNG is shown.
+fn delay_s(path: &Path) -> f64 {
+    let file = BufReader::new(fs::File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut bytes).unwrap();
+    let frame = reader.info().frame_control().unwrap();
+    f64::from(frame.delay_num) / f64::from(frame.delay_den)
+}
+
+#[test]
+fn other_cases_stand_beside_the_frame_in_their_order() {
+    let folder = TempDir::new().unwrap();
+    let cases = ["--beside", "truth:spp=16", "--beside", "truth:bounces=1,shapes=analytic"];
+    film(folder.path(), "a.png", &cases, None).success();
+    let (pictures, [width, _]) = pictures(&folder.path().join("a.png"));
+    assert_eq!((pictures.len(), width), (3, 3 * SIZE[0]));
+    for (place, case) in [(1, cases[1]), (2, cases[3])] {
+        let alone = TempDir::new().unwrap();
+        let more = ["--case", case, "--frames", "4..5"];
+        film(alone.path(), "b.png", &more, None).success();
+        let picture = still(&alone.path().join("frame-0004.png"));
+        let panel = pictures[0].chunks(3 * SIZE[0]).skip(place).step_by(3).flatten().copied();
+        assert!(panel.eq(picture), "panel {place} is not {case}");
+    }
+}
+
 #[test]
 fn truth_and_error_stand_beside_the_frame() {
     let folder = TempDir::new().unwrap();
-    film(folder.path(), "a.apng", &["--beside", "truth,error"], None).success();
+    film(folder.path(), "a.apng", &["--beside", "truth", "--beside", "error"], None).success();
     let (pictures, [width, height]) = pictures(&folder.path().join("a.apng"));
     assert_eq!([width, height], [3 * SIZE[0], SIZE[1]]);
     let frame = still(&folder.path().join("frame-0005.png"));
@@ -104,11 +137,16 @@ fn what_names_no_film_is_refused() {
     let said = message(&film(folder.path(), "a.gif", &[], None).code(2));
     assert!(said.contains("a.gif") && said.contains(".webm"), "{said}");
     let said = message(&film(folder.path(), "a.png", &["--beside", "flip"], None).code(2));
-    assert!(said.contains("valid: truth, error"), "{said}");
+    for word in ["--beside", "no method `flip`", "truth", "`error`"] {
+        assert!(said.contains(word), "no `{word}` in: {said}");
+    }
     let mut alone = Command::cargo_bin("mirrorbench").unwrap();
     let render = ["render", "--scene", "sky", "--case", "truth", "--beside", "truth"];
     let said = message(&alone.args(render).assert().code(2));
     assert!(said.contains("--film"), "{said}");
+    let said = message(&film(folder.path(), "a.png", &["--frames", "478..481"], None).code(2));
+    assert!(said.contains("no frame 480; valid: 0 to 479"), "{said}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
 /// A stand-in for ffmpeg that keeps what it is told and given.

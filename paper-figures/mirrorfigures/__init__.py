@@ -7,6 +7,6 @@ writes `paper-figures/out/<paper>/<figure>.{png,pdf,json}`. `page` makes the ind
 
 from .exr import Frame, read_frame
 from .figure import Figure, main
-from .runs import Run, bench, follow, render
+from .runs import Run, bench, film, follow, render
 
-__all__ = ["Figure", "Frame", "Run", "bench", "follow", "main", "read_frame", "render"]
+__all__ = ["Figure", "Frame", "Run", "bench", "film", "follow", "main", "read_frame", "render"]

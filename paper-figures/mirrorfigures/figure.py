@@ -18,6 +18,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from PIL import Image
 
 from . import images, paths, registry
 from .runs import Run, RunFailed
@@ -57,6 +58,8 @@ class Figure:
         self._tables: list[dict] = []
         self._comparisons: list[dict] = []
         self._pictures: dict[str, np.ndarray] = {}
+        self._film: dict | None = None
+        self._film_pictures: tuple[list[Image.Image], float] | None = None
 
     def cite(self, *runs: Run) -> None:
         """The runs the figure rests on; their rows are stored with it."""
@@ -80,6 +83,11 @@ class Figure:
         for kind, picture in (("truth", truth), ("ours", ours), ("error", error)):
             self._pictures[files[kind]] = picture
         self._comparisons.append({"label": label, **files})
+
+    def film(self, label: str, pictures: list[Image.Image], rate_hz: float) -> None:
+        """Pictures of one size for the page to play, so many a second."""
+        self._film = {"label": label, "file": f"{self.name}-film.png"}
+        self._film_pictures = (pictures, rate_hz)
 
     @property
     def devices(self) -> list[dict]:
@@ -109,6 +117,9 @@ class Figure:
             plt.close(self.plot)
             for file, picture in self._pictures.items():
                 images.to_image(picture).save(aside / file)
+            if self._film and self._film_pictures:
+                pictures, rate_hz = self._film_pictures
+                images.write_film(pictures, aside / self._film["file"], rate_hz)
             written = sorted(p.name for p in aside.iterdir())
             record = json.dumps(self._record(), indent=1, ensure_ascii=False)
             (aside / f"{self.name}.json").write_text(record + "\n", encoding="utf-8")
@@ -131,6 +142,7 @@ class Figure:
             "numbers": self._numbers,
             "tables": self._tables,
             "comparisons": self._comparisons,
+            "film": self._film,
             "rows": self._rows,
         }
 

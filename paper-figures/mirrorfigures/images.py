@@ -1,5 +1,7 @@
 """Pictures for paper and page: tone mapping, error maps, crops."""
 
+from pathlib import Path
+
 import matplotlib
 import numpy as np
 from PIL import Image
@@ -49,3 +51,11 @@ def worst_boxes(error: np.ndarray, mask: np.ndarray, side: int, count: int) -> l
         boxes.append((int(left), int(top), int(left) + side, int(top) + side))
         remaining[top : top + side, left : left + side] = 0.0
     return boxes
+
+
+def write_film(pictures: list[Image.Image], file: Path, rate_hz: float) -> None:
+    """An animated PNG that goes round for ever."""
+    first, *others = pictures
+    first.save(
+        file, save_all=True, append_images=others, duration=round(1000 / rate_hz), loop=0, format="PNG"
+    )

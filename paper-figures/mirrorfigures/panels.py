@@ -83,6 +83,25 @@ def strip(figure: Figure, scene: str, case: str, frames: tuple[int, ...], *, siz
     figure.plot = plot
 
 
+def contact_sheet(rows: list[list], names: list[str], places: list[str], box: tuple) -> plt.Figure:
+    """Pictures of a film: a row a case, a column a frame, each the part inside `box`."""
+    width, height = box[2] - box[0], box[3] - box[1]
+    column = 9.6 / len(places)
+    plot, axes = plt.subplots(
+        len(names),
+        len(places),
+        figsize=(9.6, column * height / width * len(names) + 0.8),
+        layout="constrained",
+        squeeze=False,
+    )
+    plot.get_layout_engine().set(rect=(0, 0.04, 1, 0.95), h_pad=0.02, w_pad=0.03)
+    for line, name, pictures in zip(axes, names, zip(*rows, strict=True), strict=True):
+        for axis, picture, place in zip(line, pictures, places, strict=True):
+            _picture(axis, np.asarray(picture.crop(box)), place if name == names[0] else "", [])
+        line[0].set_ylabel(name)
+    return plot
+
+
 def _close_ups(error: np.ndarray, mask: np.ndarray) -> list[tuple]:
     left, top, right, bottom = images.box_around(mask)
     side = max(8, min(right - left, bottom - top) // 5)

@@ -21,6 +21,9 @@ from .exr import Frame, read_frame
 
 SCHEMA_VERSION = 2
 
+FILES = "{files}"
+"""Stands in arguments for the folder of a run's files, which is known only when it is made."""
+
 
 class RunFailed(RuntimeError):
     """The binary refused or failed; the message is its own."""
@@ -111,6 +114,15 @@ def follow(scene: str, cases: list[str], *, size: str, frames: str) -> Run:
     return _run(arguments)
 
 
+def film(scene: str, cases: list[str], *, size: str, frames: str) -> Run:
+    """Film frames of the first case with the others beside it, into the run's file `film.png`."""
+    arguments = ["render", "--scene", scene, "--size", size, "--frames", frames, "--case", cases[0]]
+    arguments += ["--film", f"{FILES}/film.png"]
+    for case in cases[1:]:
+        arguments += ["--beside", case]
+    return _run(arguments)
+
+
 def _kept(file: Path, scene: str, cases: list[str], size: str, frames: str, fallback: str) -> Run:
     """The file's last row of each case."""
     begin, end = (int(n) for n in frames.split(".."))
@@ -144,7 +156,8 @@ def _make(arguments: list[str], folder: Path) -> None:
     folder.parent.mkdir(parents=True, exist_ok=True)
     aside = Path(tempfile.mkdtemp(prefix="making-", dir=folder.parent))
     try:
-        command = [str(paths.binary()), *arguments, "--json", "--out", str(aside / "files")]
+        placed = [argument.replace(FILES, str(aside / "files")) for argument in arguments]
+        command = [str(paths.binary()), *placed, "--json", "--out", str(aside / "files")]
         print("  mirrorbench " + " ".join(arguments), file=sys.stderr, flush=True)
         (aside / "files").mkdir()
         done = subprocess.run(command, capture_output=True, cwd=paths.ROOT, check=False)

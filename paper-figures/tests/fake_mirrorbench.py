@@ -6,11 +6,13 @@ tested without a Vulkan device. A mirror sphere on a chequered floor among diffu
 import argparse
 import json
 import os
+import re
 import sys
 from pathlib import Path
 
 import numpy as np
 import OpenEXR
+from PIL import Image
 
 CENTRE, RADIUS = np.array([0.0, 1.0, 0.0]), 1.0
 NO_OBJECT = 0xFFFFFFFF
@@ -141,6 +143,26 @@ def ball(size: int) -> dict[str, dict[str, np.ndarray]]:
     return layers
 
 
+def gbuffer(case: str, width: int, height: int, frame: int) -> dict[str, dict[str, np.ndarray]]:
+    """The mirror's points and normals, by name, in textures of the width the case names."""
+    if named := re.search(r"texture=(\d+)", case):
+        width, height = int(named[1]), int(named[1]) * height // width
+    drawn = draw(case, width, height, frame)
+    mask = (drawn["reflector.id"] == MIRROR).astype(np.float32)
+    images = {"position": mask, "normal": 0 * mask}
+    return {
+        name: {c: drawn[f"{name}.{axis}"] for c, axis in zip("RGB", "XYZ", strict=True)} | {"A": alpha}
+        for name, alpha in images.items()
+    }
+
+
+def filmed(cases: list[str], width: int, height: int, frame: int) -> Image.Image:
+    """A film's picture: the cases side by side."""
+    drawn = [draw(case, width, height, frame) for case in cases]
+    panels = [np.stack([layers[c] for c in "RGB"], -1) for layers in drawn]
+    return Image.fromarray((255 * np.clip(np.concatenate(panels, 1), 0, 1)).astype(np.uint8))
+
+
 def save(path: Path, layers: dict[str, np.ndarray]) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
@@ -213,6 +235,8 @@ def main() -> int:
     parser.add_argument("--dump", default="")
     parser.add_argument("--frames", default="0..1")
     parser.add_argument("--path", action="store_true")
+    parser.add_argument("--film", type=Path)
+    parser.add_argument("--beside", action="append", default=[])
     for ignored in ("--repeat", "--record", "--truth-frames", "--fallback"):
         parser.add_argument(ignored)
     parser.add_argument("--json", action="store_true")
@@ -230,13 +254,19 @@ def main() -> int:
     for case in args.case or []:
         if args.command == "render":
             save(args.out / f"frame-{args.frame:04}.exr", draw(case, *size, args.frame))
-            if args.dump == "environment-map/ball":
-                for name, layers in ball(64).items():
+            images = {"environment-map/ball": lambda: ball(64)}
+            images["virtual-objects/gbuffer"] = lambda: gbuffer(case, *size, args.frame)
+            if args.dump in images:
+                for name, layers in images[args.dump]().items():
                     save(args.out / "dump" / args.dump / f"{name}.exr", layers)
             if args.dump == "environment-map/capture":
                 save(args.out / "dump" / args.dump / "radiance.exr", cube(128))
             if args.dump == "z-buffered-map/capture":
                 save(args.out / "dump" / args.dump / "surface.exr", depths(128))
+        if args.film:
+            first, end = (int(n) for n in args.frames.split(".."))
+            pictures = [filmed([case, *args.beside], *size, frame) for frame in range(first, end)]
+            pictures[0].save(args.film, save_all=True, append_images=pictures[1:])
         timed = args.command == "bench"
         answer = row(args.scene, case, size, args.frame, timed, args.case[0])
         answer["run"] = f"toy-{len(case)}"

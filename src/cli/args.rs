@@ -8,7 +8,6 @@ use clap::Args;
 
 use crate::error::{Error, Result};
 use crate::experiment::engine::{Fallback, RecordMode};
-use crate::experiment::film::Beside;
 use crate::scene::Scene;
 
 /// Flags of every command that draws.
@@ -134,11 +133,6 @@ impl FromStr for Vary {
             "valid: METHOD.key=a,b,c, for instance environment-map.index=direction,surface".into()
         })
     }
-}
-
-/// One of the pictures beside a film's frames.
-pub fn beside(text: &str) -> Result<Beside, String> {
-    named(text, &Beside::NAMES)
 }
 
 /// `X,Y`: a pixel, from the top left.

@@ -2,18 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::{Common, Frames, beside, frames_of};
+use super::args::{Common, Frames, frames_of};
 use super::console::Console;
 use super::work;
 use crate::error::Result;
 use crate::experiment::bench::{self, BenchPlan};
-use crate::experiment::film::{self, Beside, Film};
+use crate::experiment::film::{self, Film};
 use crate::experiment::frame_file::{write_exr, write_png};
 use crate::experiment::lab::Lab;
 use crate::experiment::output::OutputFolder;
+use crate::experiment::panels::{Beside, Panels};
 use crate::methods::{Case, MethodInfo};
 use crate::scene::{self, FrameRecord, Moment, Scene};
-use crate::truth::{Tracer, TruthOptions};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -33,15 +33,10 @@ pub struct Args {
     /// program ffmpeg where that is installed
     #[arg(long, value_name = "FILE")]
     film: Option<PathBuf>,
-    /// What stands beside each of the film's frames: truth, error (FLIP), or both
-    #[arg(
-        long,
-        requires = "film",
-        value_name = "truth,error",
-        value_delimiter = ',',
-        value_parser = beside
-    )]
-    beside: Vec<Beside>,
+    /// What stands beside each of the film's frames: another case, the truth for instance, or `error`
+    /// (FLIP, against the truth); once for each panel, from left to right
+    #[arg(long, requires = "film", value_name = "CASE|error")]
+    beside: Vec<String>,
     /// How many of the frames are compared with the truth
     #[arg(long, default_value_t = 0, value_name = "N")]
     truth_frames: usize,
@@ -52,6 +47,8 @@ pub struct Args {
 pub fn render(args: &Args, methods: &[&'static MethodInfo]) -> Result<()> {
     let console = Console::new(args.common.json);
     let case = Case::parse(&args.case, methods)?;
+    let beside = args.beside.iter().map(|text| Beside::parse(text, methods));
+    let beside = beside.collect::<Result<Vec<_>>>()?;
     let scene = scene::load(&args.scene)?;
     let one = args.frame.unwrap_or(0);
     let range = args.frames.clone().unwrap_or(Frames(one..one.saturating_add(1)));
@@ -60,7 +57,7 @@ pub fn render(args: &Args, methods: &[&'static MethodInfo]) -> Result<()> {
     args.film.as_deref().map_or(Ok(()), film::check)?;
     let lab = work::lab(&args.common, methods, &console, folder.path().to_owned());
     console.progress().set_length(frames.len() as u64);
-    let shoot = args.film.as_deref().map(|path| Shoot::new(path, &scene, &frames, args));
+    let shoot = args.film.as_deref().map(|path| Shoot::new(path, &lab, &scene, &frames, &beside));
     let mut shoot = shoot.transpose()?;
     draw(&lab, &scene, &case, &frames, &folder, shoot.as_mut())?;
     shoot.map_or(Ok(()), |shoot| shoot.film.finish())?;
@@ -80,24 +77,26 @@ pub fn render(args: &Args, methods: &[&'static MethodInfo]) -> Result<()> {
 }
 
 /// A film on its way.
-struct Shoot {
+struct Shoot<'s> {
     film: Film,
-    beside: Vec<Beside>,
+    panels: Panels<'s>,
 }
 
-impl Shoot {
-    fn new(path: &Path, scene: &Scene, frames: &[u32], args: &Args) -> Result<Self> {
-        let [width, height] = args.common.size.0;
-        let size = [width * (1 + args.beside.len() as u32), height];
-        let film = Film::create(path, size, frames.len() as u32, scene.rate_hz)?;
-        Ok(Shoot { film, beside: args.beside.clone() })
+impl<'s> Shoot<'s> {
+    fn new(
+        path: &Path,
+        lab: &Lab,
+        scene: &'s Scene,
+        frames: &[u32],
+        beside: &[Beside],
+    ) -> Result<Self> {
+        let panels = Panels::new(lab, scene, beside)?;
+        let film = Film::create(path, panels.picture_size(), frames.len() as u32, scene.rate_hz)?;
+        Ok(Shoot { film, panels })
     }
 
-    fn add(&mut self, scene: &Scene, moment: &Moment, frame: &FrameRecord) -> Result<()> {
-        let truth = (!self.beside.is_empty())
-            .then(|| Tracer::new(scene, moment, TruthOptions::default()).frame(frame.size));
-        let truth = truth.as_ref().unwrap_or(frame);
-        self.film.add(&film::side_by_side(frame, &self.beside, truth, &moment.camera))
+    fn add(&mut self, frame: &FrameRecord, moment: &Moment, cut: bool) -> Result<()> {
+        self.film.add(&self.panels.picture(frame, moment, cut)?)
     }
 }
 
@@ -120,7 +119,7 @@ fn draw(
         write_exr(&folder.file(&format!("frame-{number:04}.exr")), &frame, &from)?;
         write_png(&folder.file(&format!("frame-{number:04}.png")), size, &frame.colour)?;
         if let Some(shoot) = &mut shoot {
-            shoot.add(scene, &moment, &frame)?;
+            shoot.add(&frame, &moment, i == 0)?;
         }
         lab.progress.inc(1);
     }

@@ -1,4 +1,4 @@
-//! A film: frames as one moving picture, and what may stand beside them.
+//! A film: pictures as one moving picture.
 //!
 //! An animated PNG is written here; other containers are left to an `ffmpeg` on the PATH, which is fed
 //! raw pictures. Either way the file appears when it is whole.
@@ -8,27 +8,8 @@ use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
-use glam::Vec3;
-
 use super::output::temporary;
 use crate::error::{Error, Result};
-use crate::geometry::Camera;
-use crate::measure::colour;
-use crate::scene::FrameRecord;
-
-/// What a film shows beside a case's frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Beside {
-    /// The truth's picture.
-    Truth,
-    /// FLIP's map of the difference between the two, from black for none to light yellow.
-    Error,
-}
-
-impl Beside {
-    pub const NAMES: [(&'static str, Beside); 2] =
-        [("truth", Beside::Truth), ("error", Beside::Error)];
-}
 
 /// The options of `ffmpeg` by a file's extension: codec, quality, container.
 const CODECS: [(&str, &[&str]); 2] = [
@@ -207,25 +188,4 @@ fn said(mut child: Child) -> io::Result<()> {
     let status = child.wait()?;
     let last = text.lines().last().unwrap_or("it said nothing");
     if status.success() { Ok(()) } else { Err(io::Error::other(format!("ffmpeg: {last}"))) }
-}
-
-/// One picture of a film: the case's frame, and what stands beside it from left to right. The truth is
-/// of the same size; with nothing beside it does not matter.
-pub fn side_by_side(
-    frame: &FrameRecord,
-    beside: &[Beside],
-    truth: &FrameRecord,
-    camera: &Camera,
-) -> Vec<u8> {
-    let displayed = |colours: &[Vec3]| colours.iter().map(|&c| colour::tone_map(c)).collect();
-    let mut panels: Vec<Vec<[u8; 3]>> = vec![displayed(&frame.colour)];
-    let ppd = colour::pixels_per_degree(camera, frame.size);
-    panels.extend(beside.iter().map(|what| match what {
-        Beside::Truth => displayed(&truth.colour),
-        Beside::Error => colour::flip_picture(frame.size, &truth.colour, &frame.colour, ppd),
-    }));
-    let width = frame.size[0] as usize;
-    let rows = 0..frame.size[1] as usize;
-    let row = |row: usize| panels.iter().flat_map(move |panel| &panel[row * width..][..width]);
-    rows.flat_map(row).flatten().copied().collect()
 }

@@ -43,7 +43,12 @@ pub struct Lab<'m> {
 
 /// What draws the frames of one case.
 pub enum Artist<'s> {
-    Truth { scene: &'s Scene, options: TruthOptions, cache: Cache },
+    /// Frames traced, and kept where there is a cache.
+    Truth {
+        scene: &'s Scene,
+        options: TruthOptions,
+        cache: Option<Cache>,
+    },
     Engine(Box<Engine>),
 }
 
@@ -72,10 +77,14 @@ impl<'m> Lab<'m> {
         size: [u32; 2],
         record: RecordMode,
     ) -> Result<Engine> {
-        let Settings { fallback, ref shader_dir, ref dump, .. } = self.settings;
-        let (shader_dir, dump) = (shader_dir.clone(), dump.clone());
-        let options = RunOptions { size, record, fallback, shader_dir, dump };
+        let options = RunOptions { dump: self.settings.dump.clone(), ..self.options(size, record) };
         Engine::new(self.device()?, scene, case, self.methods, &options)
+    }
+
+    /// How engines are set up; nothing is dumped.
+    fn options(&self, size: [u32; 2], record: RecordMode) -> RunOptions {
+        let Settings { fallback, ref shader_dir, .. } = self.settings;
+        RunOptions { size, record, fallback, shader_dir: shader_dir.clone(), dump: None }
     }
 
     /// What draws full records of a case.
@@ -84,12 +93,31 @@ impl<'m> Lab<'m> {
     /// [`Error::Usage`] for a hybrid with the truth in it: the truth knows no parts.
     pub fn artist<'s>(&self, scene: &'s Scene, case: &Case, size: [u32; 2]) -> Result<Artist<'s>> {
         match truth_options(case)? {
-            Some(options) => Ok(Artist::Truth { scene, options, cache: Cache::of_user()? }),
+            Some(options) => Ok(Artist::Truth { scene, options, cache: Some(Cache::of_user()?) }),
             None => {
                 let engine = self.engine(scene, case, size, RecordMode::Full)?;
                 Ok(Artist::Engine(Box::new(engine)))
             }
         }
+    }
+
+    /// What draws a case beside another: it dumps nothing, for the dumps are the other's, and keeps no
+    /// truths, for a film has many and needs each once.
+    ///
+    /// # Errors
+    /// Those of [`Lab::artist`].
+    pub fn companion<'s>(
+        &self,
+        scene: &'s Scene,
+        case: &Case,
+        size: [u32; 2],
+    ) -> Result<Artist<'s>> {
+        if let Some(options) = truth_options(case)? {
+            return Ok(Artist::Truth { scene, options, cache: None });
+        }
+        let options = self.options(size, RecordMode::Full);
+        let engine = Engine::new(self.device()?, scene, case, self.methods, &options)?;
+        Ok(Artist::Engine(Box::new(engine)))
     }
 
     /// The device a case's row names.
@@ -149,7 +177,9 @@ impl Artist<'_> {
         match self {
             Artist::Engine(engine) => engine.frame(moment, cut),
             Artist::Truth { scene, options, cache } => {
-                let frame = cache.frame(&Tracer::new(scene, moment, *options), size)?;
+                let tracer = Tracer::new(scene, moment, *options);
+                let kept = cache.as_ref().map(|cache| cache.frame(&tracer, size)).transpose()?;
+                let frame = kept.unwrap_or_else(|| tracer.frame(size));
                 Ok((frame, FrameTimes::default()))
             }
         }

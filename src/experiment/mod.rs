@@ -11,6 +11,7 @@ pub mod film;
 pub mod frame_file;
 pub mod lab;
 pub mod output;
+pub mod panels;
 pub mod path;
 pub mod probe;
 pub mod results;

@@ -1,0 +1,65 @@
+"""The camera of a scene's frame, read off its file: where it stands, and where it sees a point."""
+
+import tomllib
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from . import paths
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A perspective camera; vectors are unit, halves are of the image at distance 1."""
+
+    eye: np.ndarray
+    forward: np.ndarray
+    right: np.ndarray
+    up: np.ndarray
+    half_width: float
+    half_height: float
+
+    def widened(self, factor: float) -> "Camera":
+        """Its image `factor` times as wide and as high."""
+        return replace(
+            self, half_width=factor * self.half_width, half_height=factor * self.half_height
+        )
+
+    def place(self, points: np.ndarray) -> np.ndarray:
+        """Where points (... x 3, before the eye) lie on the image: across and down, 0 to 1."""
+        towards = np.asarray(points) - self.eye
+        distance = towards @ self.forward
+        across = (towards @ self.right) / (distance * self.half_width)
+        up = (towards @ self.up) / (distance * self.half_height)
+        return np.stack([0.5 + 0.5 * across, 0.5 - 0.5 * up], axis=-1)
+
+
+def description(scene: str) -> dict:
+    """A scene's file."""
+    return tomllib.loads((paths.SCENES / f"{scene}.toml").read_text(encoding="utf-8"))
+
+
+def camera(scene: str, frame: int, size: str) -> Camera:
+    """The camera of a frame of a scene whose camera stands still or follows keys; an orbit only where
+    it begins, at frame 0."""
+    said = description(scene)
+    view = said["camera"]
+    if "orbit" in view and frame:
+        raise ValueError(f"the camera of {scene} orbits; only its frame 0 can be read off the file")
+    eye, target = (_at(view, key, frame / said.get("rate_hz", 24.0)) for key in ("eye", "target"))
+    forward = (target - eye) / np.linalg.norm(target - eye)
+    right = np.cross(forward, (0.0, 1.0, 0.0))
+    right /= np.linalg.norm(right)
+    width, height = (int(n) for n in size.split("x"))
+    half_height = float(np.tan(np.radians(view["fov_deg"]) / 2))
+    up = np.cross(right, forward)
+    return Camera(eye, forward, right, up, half_height * width / height, half_height)
+
+
+def _at(view: dict, name: str, time_s: float) -> np.ndarray:
+    """Eye or target at a time: blended linearly between keys."""
+    if "keys" not in view:
+        return np.array(view[name], float)
+    times = [key["time_s"] for key in view["keys"]]
+    values = np.array([key[name] for key in view["keys"]], float)
+    return np.array([np.interp(time_s, times, column) for column in values.T])
