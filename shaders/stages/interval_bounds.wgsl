@@ -1,18 +1,21 @@
-// Bounds of what lies behind each texel, and of what is doubtful there.
+// Bounds of what lies behind each texel, and all that a search wants to know of it, in one place.
 //
 // Across each border of a texel every surface should go on. Two surfaces do where their planes meet between the
 // two texels' centres: on a smooth surface tangents do, at a corner the two faces do. A surface that does not go
 // on ends somewhere between the two centres, and neither sample says where.
-#import bindings::interval_map::{Patch, SLOTS, height, interval_map, joint, patch_at}
-#import bindings::layers::layered_map
+#import bindings::interval_map::{
+    HALF_LEAST, HALF_MOST, HALF_ROOM, LAYER_BITS, Patch, SLOTS, halves_around, height, in_fours, interval_map, joint,
+    patch_at, place_in_pyramid,
+}
+#import bindings::layers::{layer_surface, layered_map}
 #import common::cube::{cube_direction, cube_texel}
 #import common::face_ray::on_face
 
 @group(0) @binding(0) var interval_order: texture_2d_array<u32>;
 // Intervals' lowest and highest w, the farthest surface's; the lowest above the highest where there is none.
-@group(0) @binding(1) var interval_bounds: texture_storage_2d_array<rgba32float, write>;
-// Lowest and highest w of what is doubtful.
-@group(0) @binding(2) var interval_doubt: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(1) var interval_bounds: texture_storage_2d_array<rg32uint, write>;
+// See `write_texel`.
+@group(0) @binding(2) var interval_texels: texture_storage_2d_array<rgba32uint, write>;
 
 const NOTHING: vec2<f32> = vec2(3.0e38, -3.0e38);
 
@@ -103,6 +106,13 @@ struct Bounds {
     near: vec2<f32>,
     far: vec2<f32>,
     doubt: vec2<f32>,
+    // The most by which a sheet differs from its part in a neighbouring texel.
+    gap: f32,
+}
+
+// Of a search's heights of a surface over a texel.
+fn rounding(surface: Patch) -> f32 {
+    return 1.0e-5 * (surface.w + abs(surface.gradient.x) + abs(surface.gradient.y));
 }
 
 // What one border adds to a texel's bounds.
@@ -130,7 +140,7 @@ fn across(bounds: Bounds, own: Column, side: u32) -> Bounds {
                 continue;
             }
             if mine.role == SHEET {
-                // Where a ray may slip through between the two; see bindings/interval_search.wgsl.
+                // Where a ray may slip through between the two; see bindings/interval_texel.wgsl.
                 let along = 0.5 * step.yx;
                 let one = height_at(other, theirs.surface, own.face, border + along);
                 let two = height_at(other, theirs.surface, own.face, border - along);
@@ -138,6 +148,7 @@ fn across(bounds: Bounds, own: Column, side: u32) -> Bounds {
                 let gap_two = two - height(mine.surface, 0.5 * step - along);
                 let gap = select(min(abs(gap_one), abs(gap_two)), 0.0, gap_one * gap_two < 0.0);
                 if gap <= joint(w) {
+                    out.gap = max(out.gap, min(max(abs(gap_one), abs(gap_two)), joint(w)) + rounding(mine.surface));
                     let both = hull(hull(NOTHING, one), two);
                     if is_farthest(own, i) {
                         out.far = hull(hull(out.far, both.x), both.y);
@@ -174,7 +185,7 @@ fn across(bounds: Bounds, own: Column, side: u32) -> Bounds {
 
 // What the texel's own surfaces span.
 fn within(own: Column) -> Bounds {
-    var out = Bounds(NOTHING, NOTHING, NOTHING);
+    var out = Bounds(NOTHING, NOTHING, NOTHING, 0.0);
     for (var i = 0u; i < numbers(own); i++) {
         let mine = listed(own, i);
         if mine.role == ABSENT {
@@ -190,6 +201,26 @@ fn within(own: Column) -> Bounds {
         }
     }
     return out;
+}
+
+// A surface as the capture holds it, with its layer in the last bits of w.
+fn patch_words(column: Column, layer: u32) -> vec2<u32> {
+    let words = textureLoad(layer_surface, column.place, 6u * layer + column.face, 0).xy;
+    return vec2((words.x & ~LAYER_BITS) | layer, words.y);
+}
+
+// See bindings/interval_texel.wgsl.
+fn write_texel(own: Column, bounds: Bounds) {
+    let slots = numbers(own) / 2u;
+    let gap = min((1.0 + HALF_ROOM) * bounds.gap + HALF_LEAST, HALF_MOST);
+    let farthest = textureLoad(layer_surface, own.place, 6u * interval_map.peeled + own.face, 0).xy;
+    let rest = vec2(halves_around(bounds.doubt), pack2x16float(vec2(gap, 0.0)) | (slots << 16u));
+    textureStore(interval_texels, in_fours(own.place), own.face, vec4(farthest, rest));
+    for (var slot = 0u; slot < slots; slot++) {
+        let layers = vec2(own.order >> (8u * slot), own.order >> (8u * slot + 4u)) & vec2(15u);
+        let words = vec4(patch_words(own, layers.x), patch_words(own, layers.y));
+        textureStore(interval_texels, in_fours(own.place), 6u * (slot + 1u) + own.face, words);
+    }
 }
 
 @compute @workgroup_size(8, 8)
@@ -209,12 +240,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var side = 0u; side < 4u; side++) {
         bounds = across(bounds, own, side);
     }
+    write_texel(own, bounds);
     // A ray that meets what is doubtful has to be told, so it is part of the bounds.
-    let doubt = bounds.doubt;
-    let near = vec2(min(bounds.near.x, doubt.x), max(bounds.near.y, doubt.y));
-    // Room for the rounding of the search.
-    let slack = vec4(1.0 - 1.0e-5, 1.0 + 1.0e-5, 1.0 - 1.0e-5, 1.0 + 1.0e-5);
-    let all = clamp(vec4(near, bounds.far) * slack, vec4(-3.0e38), vec4(3.0e38));
-    textureStore(interval_bounds, place, face, all);
-    textureStore(interval_doubt, place, face, vec4(bitcast<vec2<u32>>(doubt), 0u, 0u));
+    let doubtful = unpack2x16float(halves_around(bounds.doubt));
+    let near = vec2(min(bounds.near.x, doubtful.x), max(bounds.near.y, doubtful.y));
+    // Half floats leave room for the rounding of the search.
+    let words = vec4(halves_around(near), halves_around(bounds.far), 0u, 0u);
+    textureStore(interval_bounds, place_in_pyramid(place, 0u), face, words);
 }

@@ -1,6 +1,6 @@
 // The revised z-buffered environment map: the first crossing of the mirrored ray with intervals behind the map's
 // texels, found over a pyramid of bounds, refined inside the texel, with a flag where the map cannot know.
-#import bindings::interval_map::{height, patch_at}
+#import bindings::interval_map::height
 #import bindings::interval_search::{map_work, search_map}
 #import bindings::layers::{MapTexel, layer_colour, layer_identity, layered_map}
 #import bindings::record::count
@@ -32,7 +32,7 @@ fn answer(at: MirrorPoint) -> Chain {
         let uv = centre;
 #endif
         // The surface's own point in that direction, never the ray's.
-        let w = height(patch_at(hit.face, hit.texel, hit.layer), uv - centre);
+        let w = height(hit.surface, uv - centre);
         let direction = cube_direction(hit.face, uv / f32(layered_map.size));
         let point = layered_map.centre + direction / w;
         let radiance = layer_colour(texel, hit.layer);

@@ -34,9 +34,10 @@ pub struct IntervalMap {
     pub layers: LayeredCapture,
     /// Layers of each interval's front and back, and where what was not stored begins.
     order: Image,
-    /// Lowest and highest w of what is doubtful behind a texel.
-    doubt: Image,
-    /// Pyramid of the lowest and highest w of intervals, and of the farthest surface.
+    /// All that a search wants of a texel: its farthest surface, and what is doubtful; then its intervals.
+    texels: Image,
+    /// Pyramid of the lowest and highest w of intervals, and of the farthest surface; all levels side by
+    /// side.
     bounds: Image,
     uniform: IntervalUniform,
 }
@@ -56,15 +57,15 @@ impl IntervalMap {
         // A front and a back each, and one more that tells whether this is all.
         let peeled = 2 * intervals + 1;
         let levels = size.ilog2() + 1;
-        let image = |what: &str, format, levels| {
-            let name = format!("{name} {what}");
-            Image::with_levels(device, &name, format, [size; 2], Shape::Array(6), levels)
+        // As `in_fours` of shaders/bindings/interval_map.wgsl places texels.
+        let image = |what: &str, format, size, layers| {
+            Image::new(device, &format!("{name} {what}"), format, size, Shape::Array(layers))
         };
         Ok(IntervalMap {
             layers: LayeredCapture::new(device, name, size, peeled + 1, mode)?,
-            order: image("order", Format::Rg32Uint, 1)?,
-            doubt: image("doubt", Format::Rg32Uint, 1)?,
-            bounds: image("bounds", Format::Rgba32Float, levels)?,
+            order: image("order", Format::Rg32Uint, [size, size], 6)?,
+            texels: image("texels", Format::Rgba32Uint, [2 * size, size / 2], 6 * (1 + intervals))?,
+            bounds: image("bounds", Format::Rg32Uint, [3 * size, size / 2], 6)?,
             uniform: IntervalUniform { peeled, intervals, levels, pad: 0 },
         })
     }
@@ -75,9 +76,7 @@ impl IntervalMap {
             .bind(pass)
             .uniform("interval_map", &self.uniform)
             .optional()
-            .sample("interval_order", &self.order)
-            .optional()
-            .sample("interval_doubt", &self.doubt)
+            .sample("interval_texels", &self.texels)
             .optional()
             .sample("interval_bounds", &self.bounds)
             .optional()
@@ -128,7 +127,7 @@ impl IntervalStage {
         exclude: &[ObjectId],
     ) -> Result<()> {
         self.capture.capture(frame, scene, name, &mut map.layers, centre, exclude)?;
-        let IntervalMap { layers, order, doubt, bounds, uniform } = &*map;
+        let IntervalMap { layers, order, texels, bounds, uniform } = &*map;
         // The six faces below one another.
         let over = |level: u32| [layers.size >> level, 6 * (layers.size >> level)];
         let pass = frame.pass(&format!("{name}/intervals")).compute(&self.order);
@@ -143,13 +142,15 @@ impl IntervalStage {
             .uniform("interval_map", uniform)
             .sample("interval_order", order)
             .store("interval_bounds", bounds)
-            .store("interval_doubt", doubt)
+            .store("interval_texels", texels)
             .over_pixels(over(0))?;
-        for level in 1..bounds.levels {
+        for level in 1..uniform.levels {
             let pass = frame.pass(&format!("{name}/pyramid")).compute(&self.pyramid);
-            pass.sample("bounds_below", bounds)
-                .uniform("below", &(level - 1))
-                .store_level("interval_bounds", bounds, level)
+            layers
+                .bind(pass)
+                .sample("bounds_below", bounds)
+                .uniform("level", &level)
+                .store("interval_bounds", bounds)
                 .over_pixels(over(level))?;
         }
         Ok(())
