@@ -2,8 +2,8 @@
 
 To be seen: The camera turns away from a mirror sphere. Where textures hold just the view, the far vertices of
 long triangles, which the sphere's missing part would show, end on the last texels instead: floor and columns bend
-along the right border. Textures 1.2 times as wide, with texels as fine, push that out of the view; what else is
-wrong stays. The strip has frames of the film.
+along the right border. Textures 1.2 times as wide, with texels as fine, push that out of the view, textures
+fitted to the reflector too; what else is wrong stays. The strip has frames of the film.
 
 Claim: "This causes small, but noticeable artifacts"; "in the video we show the effect of increasing the size of
 the frustum"; "this choice does not have a major impact on quality" (section 7).
@@ -18,6 +18,7 @@ SCENE, SIZE, FRAMES = "columns-turn", "320x180", (40, 88)
 CASES = {
     "widening 1": "virtual-objects:widening=1,texture=320,subdivide=1",
     "widening 1.2": "virtual-objects:widening=1.2,texture=384,subdivide=1",
+    "fitted": "virtual-objects:frustum=fitted,texture=320,subdivide=1",
     "ray traced": "truth",
 }
 BOX = (180, 0, 320, 180)  # where the sphere leaves
