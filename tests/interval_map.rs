@@ -106,8 +106,18 @@ fn visits_grow_with_the_logarithm_of_the_map() {
 #[ignore = "measures, at sizes beyond a quick suite"]
 fn measure_visits() {
     let session = Session::open();
-    for name in ["patow-room", "columns", "clutter-60", "clutter-400", "sticks"] {
-        for (size, layers) in [(512, 1), (1024, 1), (2048, 1), (512, 2), (1024, 2)] {
+    let names = [
+        "patow-room",
+        "columns",
+        "window-teapot",
+        "square-mirror",
+        "clutter-60",
+        "clutter-150",
+        "clutter-400",
+        "sticks",
+    ];
+    for name in names {
+        for (size, layers) in [(512, 1), (1024, 1), (512, 2), (1024, 2)] {
             let counts = searched(&session, &scene::load(name).unwrap(), size, layers, 1 << 15);
             println!("{name} size={size} layers={layers}: {counts:?}");
         }

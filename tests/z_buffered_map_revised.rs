@@ -4,30 +4,13 @@
 mod gpu_support;
 
 use glam::{Affine3A, Vec3, Vec4Swizzles};
-use gpu_support::{Session, frame, judged, options, tracer};
+use gpu_support::{Session, frame, judged, options, reseeded, tracer, wrong};
 use mirrorbench::experiment::engine::Fallback;
-use mirrorbench::measure::{self, Accuracy, Class, Maps};
-use mirrorbench::scene::{self, FrameRecord, Motion, Scene, Source};
+use mirrorbench::measure::{self, Accuracy, Class};
+use mirrorbench::scene::{self, Motion, Scene, Source};
 
 const SIZE: [u32; 2] = [128, 96];
 const CASE: &str = "z-buffered-map@revised:size=256,layers=2";
-
-/// A scene's text with every seed moved on.
-fn reseeded(name: &str, by: u32) -> Scene {
-    let text = std::fs::read_to_string(scene::scenes_dir().unwrap().join(format!("{name}.toml")));
-    let text = text.unwrap();
-    let mut parts = text.split("seed = ");
-    let mut moved = parts.next().unwrap().to_owned();
-    for part in parts {
-        let end = part.find(',').unwrap();
-        let seed: u32 = part[..end].parse().unwrap();
-        moved += &format!("seed = {}{}", seed + 100 * by, &part[end..]);
-    }
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("reseeded.toml");
-    std::fs::write(&path, moved).unwrap();
-    scene::load(path.to_str().unwrap()).unwrap()
-}
 
 /// A frame with flagged pixels traced, its accuracy, and the share of reflector pixels traced.
 fn certified(session: &Session, scene: &Scene, case: &str, size: [u32; 2]) -> (Accuracy, f64) {
@@ -44,36 +27,20 @@ fn certified(session: &Session, scene: &Scene, case: &str, size: [u32; 2]) -> (A
     (accuracy, share)
 }
 
-/// Compared pixels, those wrong at a pixel, and those of them that carry no flag.
-fn doubts(tested: &FrameRecord, maps: &Maps) -> [usize; 3] {
-    let mut counts = [0; 3];
-    for i in tested.reflector_pixels() {
-        let wrong = match maps.class[i] {
-            Class::Outside | Class::Footprint => continue,
-            Class::Placed => maps.displacement_px[i] > 1.0,
-            _ => true,
-        };
-        counts[0] += 1;
-        counts[1] += usize::from(wrong);
-        counts[2] += usize::from(wrong && !tested.record.ids[i].flag());
-    }
-    counts
-}
-
 #[test]
 fn what_is_wrong_carries_a_flag() {
     let session = Session::open();
-    let mut sum = [0; 3];
+    let mut sum = [0; 2];
     for name in ["columns", "patow-room", "clutter-60", "sticks"] {
         let scene = scene::load(name).unwrap();
         let (tested, _, maps) = judged(&session, &scene, CASE, SIZE, 0);
-        let counts = doubts(&tested, &maps);
-        assert!(counts[2] <= 1, "{name}: {} of {} wrong pixels unflagged", counts[2], counts[1]);
-        sum = [0, 1, 2].map(|i| sum[i] + counts[i]);
+        let counts = wrong(&tested, &maps).map(|pixels| pixels.len());
+        assert!(counts[1] <= 1, "{name}: {} of {} wrong pixels unflagged", counts[1], counts[0]);
+        sum = [0, 1].map(|i| sum[i] + counts[i]);
     }
-    let [compared, wrong, unflagged] = sum;
-    assert!(wrong > 10, "only {wrong} of {compared} are wrong: nothing to flag");
-    assert!(unflagged <= 2, "{unflagged} of {wrong} wrong pixels carry no flag");
+    let [all, unflagged] = sum;
+    assert!(all > 10, "only {all} are wrong: nothing to flag");
+    assert!(unflagged <= 2, "{unflagged} of {all} wrong pixels carry no flag");
 }
 
 #[test]
@@ -308,9 +275,8 @@ fn measure_clutter() {
             one += judged(&session, &scene, &case(1), size, 0).1.wrong_object / 20.0;
             let (tested, accuracy, maps) = judged(&session, &scene, &case(2), size, 0);
             two += accuracy.wrong_object / 20.0;
-            let counts = doubts(&tested, &maps);
-            compared += counts[0];
-            unflagged += counts[2];
+            compared += tested.reflector_pixels().len();
+            unflagged += wrong(&tested, &maps)[1].len();
             let (accuracy, share) = certified(&session, &scene, &case(2), size);
             bad += accuracy.bad_share.one / 20.0;
             traced += share / 20.0;

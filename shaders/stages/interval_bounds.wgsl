@@ -4,8 +4,8 @@
 // two texels' centres: on a smooth surface tangents do, at a corner the two faces do. A surface that does not go
 // on ends somewhere between the two centres, and neither sample says where.
 #import bindings::interval_map::{
-    HALF_LEAST, HALF_MOST, HALF_ROOM, LAYER_BITS, Patch, SLOTS, halves_around, height, in_fours, interval_map, joint,
-    patch_at, place_in_pyramid,
+    BACK, HALF_LEAST, HALF_MOST, HALF_ROOM, LAYER_BITS, Patch, SLOTS, halves_around, height, in_fours, interval_map,
+    joint, patch_at, patch_of, place_in_pyramid,
 }
 #import bindings::layers::{layer_surface, layered_map}
 #import common::cube::{cube_direction, cube_texel}
@@ -20,7 +20,7 @@
 const NOTHING: vec2<f32> = vec2(3.0e38, -3.0e38);
 
 const FRONT: u32 = 0u;
-const BACK: u32 = 1u;
+const REAR: u32 = 1u;
 const SHEET: u32 = 2u;
 const ABSENT: u32 = 3u;
 
@@ -45,6 +45,12 @@ fn numbers(column: Column) -> u32 {
     return 2u * (SLOTS - countLeadingZeros(~column.order) / 8u) + 1u;
 }
 
+// Layers of a slot's front and back.
+fn layers_of(order: u32, slot: u32) -> vec2<u32> {
+    let layers = order >> (8u * slot);
+    return vec2(layers, layers >> 4u) & vec2(15u);
+}
+
 fn is_farthest(column: Column, number: u32) -> bool {
     return number + 1u == numbers(column);
 }
@@ -53,15 +59,15 @@ fn listed(column: Column, number: u32) -> Listed {
     var layer = interval_map.peeled;
     var role = SHEET;
     if !is_farthest(column, number) {
-        let slot = column.order >> (8u * (number / 2u));
-        let front = slot & 15u;
-        let back = (slot >> 4u) & 15u;
+        let layers = layers_of(column.order, number / 2u);
+        let front = layers.x;
+        let back = layers.y;
         let second = (number & 1u) == 1u;
         if second && front == back {
             return Listed(Patch(0.0, vec2(0.0)), ABSENT);
         }
         layer = select(front, back, second);
-        role = select(select(FRONT, BACK, second), SHEET, front == back);
+        role = select(select(FRONT, REAR, second), SHEET, front == back);
     }
     let surface = patch_at(column.face, column.place, layer);
     return Listed(surface, select(ABSENT, role, surface.w > 0.0));
@@ -183,6 +189,28 @@ fn across(bounds: Bounds, own: Column, side: u32) -> Bounds {
     return out;
 }
 
+#ifdef EDGES
+// Two things that reach into each other are one interval, and where their surfaces cross inside a texel the other's
+// may be the interval's. `doubt` with what an interval's front and back span where that is so.
+fn with_crossings(doubt: vec2<f32>, own: Column) -> vec2<f32> {
+    var out = doubt;
+    for (var slot = 0u; slot < numbers(own) / 2u; slot++) {
+        let layers = layers_of(own.order, slot);
+        for (var inner = layers.x + 1u; inner < layers.y; inner++) {
+            let words = textureLoad(layer_surface, own.place, 6u * inner + own.face, 0).xy;
+            let surface = patch_of(words);
+            let outer = patch_at(own.face, own.place, select(layers.x, layers.y, (words.y & BACK) != 0u));
+            let differ = outer.gradient - surface.gradient;
+            let reach = 0.5 * (abs(outer.gradient.x) + abs(outer.gradient.y));
+            if surface.w > 0.0 && abs(outer.w - surface.w) <= 0.5 * (abs(differ.x) + abs(differ.y)) {
+                out = hull(hull(out, outer.w - reach), outer.w + reach);
+            }
+        }
+    }
+    return out;
+}
+#endif
+
 // What the texel's own surfaces span.
 fn within(own: Column) -> Bounds {
     var out = Bounds(NOTHING, NOTHING, NOTHING, 0.0);
@@ -217,7 +245,7 @@ fn write_texel(own: Column, bounds: Bounds) {
     let rest = vec2(halves_around(bounds.doubt), pack2x16float(vec2(gap, 0.0)) | (slots << 16u));
     textureStore(interval_texels, in_fours(own.place), own.face, vec4(farthest, rest));
     for (var slot = 0u; slot < slots; slot++) {
-        let layers = vec2(own.order >> (8u * slot), own.order >> (8u * slot + 4u)) & vec2(15u);
+        let layers = layers_of(own.order, slot);
         let words = vec4(patch_words(own, layers.x), patch_words(own, layers.y));
         textureStore(interval_texels, in_fours(own.place), 6u * (slot + 1u) + own.face, words);
     }
@@ -240,6 +268,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var side = 0u; side < 4u; side++) {
         bounds = across(bounds, own, side);
     }
+#ifdef EDGES
+    bounds.doubt = with_crossings(bounds.doubt, own);
+#endif
     write_texel(own, bounds);
     // A ray that meets what is doubtful has to be told, so it is part of the bounds.
     let doubtful = unpack2x16float(halves_around(bounds.doubt));

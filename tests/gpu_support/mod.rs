@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use mirrorbench::experiment::engine::{Engine, Fallback, RecordMode, RunOptions};
 use mirrorbench::gpu::{Device, ValidationLog};
-use mirrorbench::measure::{self, Accuracy, Maps};
+use mirrorbench::measure::{self, Accuracy, Class, Maps};
 use mirrorbench::methods::{Case, METHODS, MethodInfo};
-use mirrorbench::scene::{FrameRecord, Moment, Scene};
+use mirrorbench::scene::{self, FrameRecord, Moment, Scene};
 use mirrorbench::truth::{Tracer, TruthOptions};
 
 /// A device with validation and synchronization checks; its end is a check too.
@@ -96,4 +96,37 @@ pub fn judged(
     let tracer = tracer(scene, &scene.at(at));
     let (accuracy, maps) = measure::accuracy(&tracer.frame(size), &tested, &tracer).unwrap();
     (tested, accuracy, maps)
+}
+
+/// A scene's text with every seed moved on.
+pub fn reseeded(name: &str, by: u32) -> Scene {
+    let text = std::fs::read_to_string(scene::scenes_dir().unwrap().join(format!("{name}.toml")));
+    let text = text.unwrap();
+    let mut parts = text.split("seed = ");
+    let mut moved = parts.next().unwrap().to_owned();
+    for part in parts {
+        let end = part.find(',').unwrap();
+        let seed: u32 = part[..end].parse().unwrap();
+        moved += &format!("seed = {}{}", seed + 100 * by, &part[end..]);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("reseeded.toml");
+    std::fs::write(&path, moved).unwrap();
+    scene::load(path.to_str().unwrap()).unwrap()
+}
+
+fn is_wrong(maps: &Maps, i: usize) -> bool {
+    match maps.class[i] {
+        Class::Outside | Class::Footprint => false,
+        Class::Placed => maps.displacement_px[i] > 1.0,
+        _ => true,
+    }
+}
+
+/// Pixels that are wrong at a pixel, and those of them that carry no flag.
+pub fn wrong(tested: &FrameRecord, maps: &Maps) -> [Vec<usize>; 2] {
+    let all: Vec<usize> =
+        tested.reflector_pixels().into_iter().filter(|&i| is_wrong(maps, i)).collect();
+    let unflagged = all.iter().copied().filter(|&i| !tested.record.ids[i].flag()).collect();
+    [all, unflagged]
 }
