@@ -153,11 +153,18 @@ fn edge_of(a: Corner, b: Corner) -> Edge {
     return out;
 }
 
-// Whether a corner is drawn too far from where it belongs when drawn as its neighbours have it: in
-// pixels, or so that what a pixel shows is at another distance. `slope`: metres the distance changes by
-// in a pixel.
-fn errs(corner: Corner, drawn_at: vec3<f32>, slope: f32) -> bool {
+// Metres by which the distance to what is shown changes in a pixel, from one corner's image to another's.
+fn slope_between(a: Corner, b: Corner) -> f32 {
+    let pixels = max(distance(pixel_of(a.image), pixel_of(b.image)), 1.0);
+    let eye = view_camera.eye;
+    return abs(distance(eye, a.image) - distance(eye, b.image)) / pixels;
+}
+
+// Whether a corner between two others is drawn too far from where it belongs when drawn as they have it:
+// in pixels, or so that what a pixel shows is at another distance.
+fn errs(corner: Corner, drawn_at: vec3<f32>, near: Corner, far: Corner) -> bool {
     let error = distance(pixel_of(corner.image), pixel_of(drawn_at));
+    let slope = max(slope_between(near, corner), slope_between(corner, far));
     let bounce = point_at(vec2<i32>(place_of(corner))).xyz;
     return error > split.tolerance
         || error * slope > DEPTH_TOLERANCE * distance(corner.image, bounce);
@@ -178,7 +185,8 @@ fn middles_of(a: Corner, b: Corner, c: Corner) -> array<Middle, 4> {
         var middle = v;
         var looks = straight && large;
         var lost = false;
-        var slope = 0.0;
+        var near = a;
+        var far = b;
         if i < 3u {
             let one = ends[i];
             let other = ends[(i + 1u) % 3u];
@@ -195,9 +203,8 @@ fn middles_of(a: Corner, b: Corner, c: Corner) -> array<Middle, 4> {
             let is_small = size < SMALL * distance(edge.near.position, bounce);
             looks = edge.counts && (length >= SHORT || !is_small);
             large = large || looks;
-            let deeper = distance(view_camera.eye, edge.far.image)
-                - distance(view_camera.eye, edge.near.image);
-            slope = abs(deeper) / max(length, SHORT);
+            near = edge.near;
+            far = edge.far;
             lost = status_of(edge.far) == LOST;
             if lost {
                 looks = edge.counts && split.generation < LOST_GENERATIONS;
@@ -207,7 +214,7 @@ fn middles_of(a: Corner, b: Corner, c: Corner) -> array<Middle, 4> {
         }
         if looks {
             let corner = corner_near(v, place);
-            out[i].halve = lost || !is_seen(corner) || errs(corner, drawn_at, slope);
+            out[i].halve = lost || !is_seen(corner) || errs(corner, drawn_at, near, far);
             out[i].corner = corner;
             if any(v != middle) {
                 out[i].corner = hidden_corner(middle);
