@@ -35,3 +35,25 @@ fn a_reflector_off_the_picture_is_searched_whole() {
         assert!(farthest < 1.0, "frame {frame}: {farthest} px off");
     }
 }
+
+#[test]
+fn what_breaks_the_law_of_reflection_is_flagged_and_nothing_else() {
+    let (session, scene) = (Session::open(), scene::load("columns").unwrap());
+    let (mut far, mut near, mut doubted) = (0, 0, [0, 0]);
+    for case in ["virtual-objects:residual_px=1", "virtual-objects@revised:split_px=0"] {
+        let (frame, _, maps) = judged(&session, &scene, case, SIZE, 0);
+        for (ids, &displacement) in frame.record.ids.iter().zip(&maps.displacement_px) {
+            // Half a pixel either side of the bound, as one Newton step is no measure.
+            if displacement > 1.5 {
+                far += 1;
+                doubted[0] += u32::from(ids.flag());
+            } else if displacement < 0.5 {
+                near += 1;
+                doubted[1] += u32::from(ids.flag());
+            }
+        }
+    }
+    assert!(far > 500 && near > 2000, "{far} far, {near} near");
+    assert!(doubted[0] * 100 >= 99 * far, "{} of {far} flagged", doubted[0]);
+    assert!(doubted[1] * 100 <= near, "{} of {near} flagged for nothing", doubted[1]);
+}
