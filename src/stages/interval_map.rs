@@ -88,7 +88,7 @@ impl IntervalMap {
 pub enum Certificate {
     /// That the ray passed what was not stored.
     Intervals,
-    /// That too, and that it passed within a texel of where a surface ends.
+    /// That too, and that it passed within a texel of where a surface ends, or two things cross.
     Edges,
 }
 

@@ -96,8 +96,8 @@ pub const INFO: MethodInfo = MethodInfo {
             kind: Kind::Choice(&["edges", "intervals"]),
             defaults: &["edges"],
             needs: Some(("variant", &["revised"])),
-            doc: "flag rays that pass what was not stored, and a texel in which a surface ends; or only \
-                  the first",
+            doc: "flag rays that pass what was not stored, and a texel in which a surface ends or crosses \
+                  another; or only the first",
         },
         STAGE,
     ],

@@ -8,8 +8,9 @@
 //! - No threshold in degrees: a surface is crossed or it is not, whatever its distance.
 //! - Intervals from front to back instead of his section 4's list of surfaces, and the farthest surface.
 //! - A flag where the map cannot know: the ray came through what was not stored; it passed a texel in which a
-//!   surface ends, or goes on as another; or what it met is denied by the texel beyond (it grazes a bend).
-//!   Unflagged and wrong may still be what is thinner than a texel, and two things that cross inside one.
+//!   surface ends, goes on as another, or crosses another; or what it met is denied by the texel beyond (it
+//!   grazes a bend). Unflagged and wrong may still be what is thinner than a texel, and what ends between two
+//!   texels' centres as if it made a corner there.
 
 use std::sync::Arc;
 
