@@ -59,15 +59,11 @@ impl Scene {
     }
 
     /// The world positions of an object's vertices at a moment, or of the closed partner it has.
-    pub fn closed_points_of(
-        &self,
-        moment: &Moment,
-        object: ObjectId,
-    ) -> impl Iterator<Item = Vec3> + Clone {
+    pub fn closed_points_of(&self, moment: &Moment, object: ObjectId) -> Vec<Vec3> {
         let pose = moment.poses[object as usize];
-        let closed = self.objects[object as usize].closed.map(|mesh| &self.meshes[mesh]);
-        let mesh = closed.unwrap_or_else(|| self.mesh_of(object));
-        mesh.positions.iter().map(move |&p| pose.transform_point3(p))
+        let own = &self.objects[object as usize];
+        let mesh = self.shape_at(moment, own.closed.unwrap_or(own.mesh));
+        mesh.positions.iter().map(|&p| pose.transform_point3(p)).collect()
     }
 
     /// The world box of one object at a moment.

@@ -44,7 +44,7 @@ impl Scene {
         (0..self.meshes.len()).map(|mesh| self.shape_at(moment, mesh)).collect()
     }
 
-    fn shape_at(&self, moment: &Moment, mesh: usize) -> Cow<'_, Mesh> {
+    pub(super) fn shape_at(&self, moment: &Moment, mesh: usize) -> Cow<'_, Mesh> {
         let rest = &self.meshes[mesh];
         match self.wobbles.get(&mesh) {
             None => Cow::Borrowed(rest),

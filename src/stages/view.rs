@@ -70,12 +70,12 @@ impl CameraUniform {
 
     /// A camera at the same eye that shows some world points as large as it can. `None` where one of
     /// them is beside or behind the eye.
-    pub fn fitted(&self, points: impl Iterator<Item = Vec3> + Clone) -> Option<CameraUniform> {
+    pub fn fitted(&self, points: &[Vec3]) -> Option<CameraUniform> {
         let parallel = self.orthographic == 1;
         let eye = self.eye();
         let (low, high) = points
-            .clone()
-            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
+            .iter()
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
         let centre = 0.5 * (low + high);
         let own_forward = Vec3::from_array(self.forward);
         let forward = if parallel { own_forward } else { (centre - eye).try_normalize()? };
@@ -87,7 +87,7 @@ impl CameraUniform {
         // Parallel rays may start anywhere.
         let origin = if parallel { centre - forward * (centre - eye).dot(forward) } else { eye };
         let (mut half, mut near, mut far) = (Vec2::ZERO, f32::INFINITY, 0.0f32);
-        for point in points {
+        for &point in points {
             let away = point - origin;
             let depth = away.dot(forward);
             let across = Vec2::new(away.dot(right), away.dot(up)).abs();

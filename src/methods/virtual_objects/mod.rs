@@ -52,6 +52,7 @@ pub const INFO: MethodInfo = MethodInfo {
              between vertices",
     passes: &[
         "virtual-objects/subdivide",
+        "virtual-objects/vertices",
         "footprint/clear-list",
         "footprint/list",
         "virtual-objects/background",
@@ -148,6 +149,7 @@ impl ReflectionMethod for VirtualObjects {
         record: &mut ReflectionRecord,
     ) -> Result<()> {
         let Some(State { source, found, split }) = &self.state else { return Ok(()) };
+        source.pose(frame, scene)?;
         self.environment.fill(frame, scene, "virtual-objects", view, record)?;
         for (place, &object) in view.reflectors.iter().enumerate() {
             let camera = self.camera(scene, view, object);
@@ -179,7 +181,7 @@ impl VirtualObjects {
             return view.camera.widened(self.rule.widening);
         }
         let points = scene.scene.closed_points_of(scene.moment(), object);
-        view.camera.fitted(points).unwrap_or_else(|| view.camera.widened(2.0))
+        view.camera.fitted(&points).unwrap_or_else(|| view.camera.widened(2.0))
     }
 
     /// Draw what was found for one reflector into its pixels.

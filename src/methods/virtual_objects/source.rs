@@ -5,9 +5,9 @@ use std::sync::Arc;
 use crate::error::{Error, Result};
 use crate::geometry::Mesh;
 use crate::geometry::subdivide::{Subdivided, subdivide};
-use crate::gpu::{Buffer, Device, Draw};
+use crate::gpu::{Buffer, Device, Draw, Frame};
 use crate::scene::{ObjectId, Scene};
-use crate::stages::Vertex;
+use crate::stages::{GpuScene, Vertex};
 
 /// More triangles than this in one object are a mistyped edge length.
 const MAX_TRIANGLES: usize = 4 << 20;
@@ -28,6 +28,8 @@ pub struct Source {
     pub triangle_count: u32,
     /// First index and index count of each object.
     ranges: Vec<(u32, u32)>,
+    /// Where each object's vertices begin.
+    first_vertices: Vec<u32>,
 }
 
 /// The lists before they are uploaded.
@@ -39,6 +41,7 @@ pub struct Lists {
     first_triangles: Vec<u32>,
     indices: Vec<u32>,
     ranges: Vec<(u32, u32)>,
+    first_vertices: Vec<u32>,
 }
 
 impl Lists {
@@ -52,7 +55,8 @@ impl Lists {
         let mut lists = Lists::default();
         for object in 0..scene.objects.len() as ObjectId {
             let mesh = scene.mesh_of(object);
-            if edge > 0.0 && !scene.is_reflector(object) {
+            // What wobbles keeps its vertices, which are denser than its waves.
+            if edge > 0.0 && !scene.is_reflector(object) && !scene.wobbles(object) {
                 let Some(Subdivided { mesh, sources }) = subdivide(mesh, edge, MAX_TRIANGLES)
                 else {
                     return Err(Error::Usage(format!(
@@ -72,6 +76,7 @@ impl Lists {
     fn append(&mut self, object: ObjectId, mesh: &Mesh, sources: impl Iterator<Item = u32>) {
         let base = self.vertices.len() as u32;
         let first = self.indices.len() as u32;
+        self.first_vertices.push(base);
         self.vertices.extend(Vertex::of(mesh));
         self.owners.resize(self.vertices.len(), object);
         self.first_triangles.push(self.triangles.len() as u32);
@@ -92,11 +97,26 @@ impl Lists {
             triangle_count: self.triangles.len() as u32,
             indices: Buffer::with_data(device, "reflected indices", &self.indices)?,
             ranges: self.ranges.clone(),
+            first_vertices: self.first_vertices.clone(),
         })
     }
 }
 
 impl Source {
+    /// Move the vertices of what wobbles to where the scene's are now.
+    pub fn pose(&self, frame: &mut Frame, scene: &GpuScene) -> Result<()> {
+        for (object, &first) in self.first_vertices.iter().enumerate() {
+            let object = object as ObjectId;
+            if scene.scene.wobbles(object) {
+                let vertices: Vec<Vertex> =
+                    Vertex::of(&scene.scene.mesh_at(scene.moment(), object)).collect();
+                let offset = u64::from(first) * size_of::<Vertex>() as u64;
+                frame.pass("virtual-objects/vertices").copy(&self.vertices, offset, &vertices)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Draw all but one object; the instance index is the object id.
     pub fn draw(&self, draw: &mut Draw, except: ObjectId) {
         for (object, &(first, count)) in self.ranges.iter().enumerate() {
