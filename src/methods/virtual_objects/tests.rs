@@ -1,9 +1,11 @@
-//! Reflection points against the closed form, on the device: what searches find in the G-buffer of a
-//! finely cut sphere, held against Alhazen's root.
+//! Reflection points against the exact ones, on the device: what searches find in the G-buffer of a
+//! finely cut sphere, held against Alhazen's root; of an ellipsoid in `ellipsoid`.
+
+mod ellipsoid;
 
 use std::sync::Arc;
 
-use glam::{DVec3, Vec2, Vec3, Vec4};
+use glam::{DAffine3, DVec3, Vec2, Vec3, Vec4};
 
 use super::rule::Rule;
 use super::search::{Corner, Found, Mirror, Search};
@@ -39,11 +41,15 @@ fn values(case: &str) -> Values {
     case.parts[0].values.clone()
 }
 
+/// The exact reflection point of a reflector about its own origin, of an eye and a point seen in it.
+type Exact = fn(DVec3, DVec3) -> Option<DVec3>;
+
 /// Everything one reflector's search needs.
 struct Bench {
     device: Arc<Device>,
     scene: GpuScene,
     reflector: ObjectId,
+    exact: Exact,
     lists: Lists,
     source: Source,
     found: Found,
@@ -58,6 +64,10 @@ const VIEW: [u32; 2] = [320, 240];
 impl Bench {
     fn new(case: &str) -> Bench {
         let (scene, reflector) = columns();
+        Bench::of(case, scene, reflector, |eye, v| reflected_point(DVec3::ZERO, 1.0, eye, v))
+    }
+
+    fn of(case: &str, scene: Scene, reflector: ObjectId, exact: Exact) -> Bench {
         let rule = Rule::new(&values(case));
         let texels = rule.texture_size(VIEW);
         let device = Device::open("auto", true).unwrap();
@@ -66,11 +76,12 @@ impl Bench {
         Bench {
             scene: GpuScene::new(&device, &Arc::new(scene)).unwrap(),
             found: Found::new(&device, source.count, 1, 0).unwrap(),
-            gbuffer: GBuffer::new(&device, texels, Format::Rgba32Float).unwrap(),
+            gbuffer: GBuffer::new(&device, texels, rule.format).unwrap(),
             search: Search::new(&device, &rule, RecordMode::Full, texels).unwrap(),
             record: ReflectionRecord::new(&device, VIEW, RecordMode::Full).unwrap(),
             rule,
             reflector,
+            exact,
             lists,
             source,
             device,
@@ -83,7 +94,7 @@ impl Bench {
         if !self.rule.fitted {
             return camera;
         }
-        camera.fitted(self.scene.scene.closed_points_of(moment, self.reflector)).unwrap()
+        camera.fitted(&self.scene.scene.closed_points_of(moment, self.reflector)).unwrap()
     }
 
     /// Where a world point is on the textures, in texels.
@@ -124,10 +135,15 @@ impl Bench {
         (texels.into_iter().map(centre).collect(), counters)
     }
 
-    /// Where the closed form has the reflection point of each vertex that is not hidden, in texels.
+    /// Where the exact reflection point of each vertex that is not hidden is, in texels.
     fn roots(&self, moment: &Moment) -> Vec<(usize, Vec2)> {
-        let centre = DVec3::new(0.0, 1.0, 0.0);
-        let eye = moment.camera.eye.as_dvec3();
+        let pose = moment.poses[self.reflector as usize];
+        let world = DAffine3 {
+            matrix3: glam::Mat3::from(pose.matrix3).as_dmat3(),
+            translation: Vec3::from(pose.translation).as_dvec3(),
+        };
+        let own = world.inverse();
+        let eye = own.transform_point3(moment.camera.eye.as_dvec3());
         let camera = self.camera(moment);
         let vertices = self.lists.vertices.iter().zip(&self.lists.owners).enumerate();
         let root = |(i, (vertex, &owner)): (usize, (&crate::stages::Vertex, &ObjectId))| {
@@ -136,22 +152,35 @@ impl Bench {
             }
             let pose = moment.poses[owner as usize];
             let v = pose.transform_point3(vertex.position());
-            let root = reflected_point(centre, 1.0, eye, v.as_dvec3())?;
-            Some((i, self.place(&camera, root.as_vec3())?))
+            let root = (self.exact)(eye, own.transform_point3(v.as_dvec3()))?;
+            Some((i, self.place(&camera, world.transform_point3(root).as_vec3())?))
         };
         vertices.filter_map(root).collect()
     }
+
+    /// Which texels show the reflector.
+    fn mask(&self) -> Vec<bool> {
+        const HALF_ONE: u16 = 0x3c00;
+        let positions = &self.gbuffer.position;
+        if self.rule.format == Format::Rgba16Float {
+            return positions
+                .read::<[u16; 4]>()
+                .unwrap()
+                .iter()
+                .map(|p| p[3] == HALF_ONE)
+                .collect();
+        }
+        positions.read::<Vec4>().unwrap().iter().map(|p| p.w == 1.0).collect()
+    }
 }
 
-/// Distances of the texels found from the closed form, in texels along the worse axis, in rising
+/// Distances of the texels found from the exact points, in texels along the worse axis, in rising
 /// order: where the eight texels round the root's show the reflector too, and at its rim.
 fn errors(bench: &Bench, moment: &Moment, texels: &[Vec2]) -> [Vec<f32>; 2] {
-    let mask: Vec<Vec4> = bench.gbuffer.position.read().unwrap();
+    let mask = bench.mask();
     let shows = |x: i32, y: i32| {
         let [width, height] = bench.gbuffer.size.map(|n| n as i32);
-        (0..width).contains(&x)
-            && (0..height).contains(&y)
-            && mask[(y * width + x) as usize].w == 1.0
+        (0..width).contains(&x) && (0..height).contains(&y) && mask[(y * width + x) as usize]
     };
     let (mut inside, mut rim) = (Vec::new(), Vec::new());
     for (i, root) in bench.roots(moment) {
