@@ -15,7 +15,7 @@ from matplotlib.patches import Rectangle
 from mirrorfigures import film, follow, main
 from mirrorfigures.charts import COLOURS, GRID
 from mirrorfigures.films import change, named, panels
-from mirrorfigures.variants import changed
+from mirrorfigures.variants import glide
 
 SIZE, FRAMES = "480x270", 24
 CASES = {
@@ -24,19 +24,10 @@ CASES = {
     "ray traced": "truth",
 }
 BOX = (150, 70, 325, 180)
-OLD = """keys = [
-    { time_s = 0.0, eye = [1.8, 1.6, 1.5], target = [0.0, 0.9, 0.0] },
-    { time_s = 8.0, eye = [0.436, 1.151, 0.363], target = [0.0, 0.9, 0.0] },
-]"""
-# From the place of frame 144, across the line to the bowl.
-NEW = """keys = [
-    { time_s = 0.0, eye = [0.777, 1.263, 0.647], target = [0.0, 0.9, 0.0] },
-    { time_s = 2.0, eye = [0.7002, 1.263, 0.7394], target = [0.0, 0.9, 0.0] },
-]"""
 
 
 def draw(figure):
-    scene = changed("kitchen-table1", OLD, NEW)
+    scene = glide()
     frames = f"0..{FRAMES}"
     shot = film(scene, list(CASES.values()), size=SIZE, frames=frames)
     path = follow(scene, [case for case in CASES.values() if case != "truth"], size=SIZE, frames=frames)
