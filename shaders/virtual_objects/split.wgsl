@@ -70,6 +70,8 @@ const DEPTH_TOLERANCE: f32 = 0.025;
 // An edge shorter than this, pixels, is straight enough, where the reflector sees it this small, radians.
 const SHORT: f32 = 2.0;
 const SMALL: f32 = 0.25;
+// Only triangles with an edge longer than this, pixels, may be drawn all round a reflector's shadow unseen.
+const BROAD: f32 = 8.0;
 // Edges that end where there is no reflection point, as beyond an open reflector, are halved so often.
 const LOST_GENERATIONS: u32 = 5u;
 // Weights of corners are in 2^-15.
@@ -194,7 +196,7 @@ fn middles_of(a: Corner, b: Corner, c: Corner) -> array<Middle, 4> {
             let size = distance(edge.near.position, edge.far.position);
             let is_small = size < SMALL * distance(edge.near.position, bounce);
             looks = edge.counts && (length >= SHORT || !is_small);
-            large = large || looks;
+            large = large || (looks && length >= BROAD);
             let deeper = distance(view_camera.eye, edge.far.image)
                 - distance(view_camera.eye, edge.near.image);
             slope = abs(deeper) / max(length, SHORT);
