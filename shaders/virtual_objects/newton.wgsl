@@ -9,8 +9,8 @@
 const MOST_STEPS: u32 = 8u;
 // Longest step, texels.
 const REACH: f32 = 8.0;
-// A last step shorter than this, texels, has arrived.
-const ARRIVED: f32 = 0.002;
+// A last step shorter than this, texels, is made on the patch it starts from.
+const ARRIVED: f32 = 0.1;
 // Sine of the largest angle between N and H that counts as a reflection point.
 const LAW: f32 = 2e-3;
 
@@ -117,7 +117,6 @@ fn newton(begin: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
         out.position = at.p;
         out.normal = at.n;
         out.steps = step + 1u;
-        out.found = dot(law, law) < LAW * LAW * dot(h, h) && dot(at.n, h) > 0.0;
         let a = dot(j_x, j_x);
         let b = dot(j_x, j_y);
         let c = dot(j_y, j_y);
@@ -128,10 +127,19 @@ fn newton(begin: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
         let g_y = dot(j_y, law);
         var delta = vec2(b * g_y - (c + damping) * g_x, b * g_x - (a + damping) * g_y) / determinant;
         delta *= min(1.0, REACH / max(length(delta), 1e-9));
-        if length(delta) < ARRIVED {
+        place += delta;
+        let arrived = length(delta) < ARRIVED;
+        var left = law;
+        if arrived {
+            left += j_x * delta.x + j_y * delta.y;
+            out.place = place;
+            out.position += at.p_x * delta.x + at.p_y * delta.y;
+            out.normal = normalize(at.n + at.n_x * delta.x + at.n_y * delta.y);
+        }
+        out.found = dot(left, left) < LAW * LAW * dot(h, h) && dot(at.n, h) > 0.0;
+        if arrived {
             break;
         }
-        place += delta;
     }
     return out;
 }

@@ -70,6 +70,8 @@ const DEPTH_TOLERANCE: f32 = 0.025;
 // An edge shorter than this, pixels, is straight enough, where the reflector sees it this small, radians.
 const SHORT: f32 = 2.0;
 const SMALL: f32 = 0.25;
+// Only triangles with an edge longer than this, pixels, may be drawn all round a reflector's shadow unseen.
+const BROAD: f32 = 8.0;
 // Edges that end where there is no reflection point, as beyond an open reflector, are halved so often.
 const LOST_GENERATIONS: u32 = 5u;
 // Weights of corners are in 2^-15.
@@ -198,11 +200,11 @@ fn middles_of(a: Corner, b: Corner, c: Corner) -> array<Middle, 4> {
             place = mix(place_of(edge.near), place_of(edge.far), share);
             drawn_at = mix(edge.near.image, edge.far.image, share);
             let length = distance(pixel_of(edge.near.image), pixel_of(edge.far.image));
-            let bounce = point_at(vec2<i32>(place_of(edge.near))).xyz;
-            let size = distance(edge.near.position, edge.far.position);
-            let is_small = size < SMALL * distance(edge.near.position, bounce);
+            let seen_from = point_at(vec2<i32>(mix(place_of(edge.near), place_of(edge.far), 0.5))).xyz;
+            let away = distance(mix(edge.near.position, edge.far.position, 0.5), seen_from);
+            let is_small = distance(edge.near.position, edge.far.position) < SMALL * away;
             looks = edge.counts && (length >= SHORT || !is_small);
-            large = large || looks;
+            large = large || (looks && (length >= BROAD || !is_small));
             near = edge.near;
             far = edge.far;
             lost = status_of(edge.far) == LOST;

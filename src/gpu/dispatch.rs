@@ -74,12 +74,17 @@ impl<'f> Pass<'f> {
 
     /// Fill buffers with one word.
     pub fn fill(self, buffers: &[&Buffer], word: u32) -> Result<()> {
+        self.fill_first(buffers, vk::WHOLE_SIZE, word)
+    }
+
+    /// Fill the first `bytes` of buffers, a multiple of 4, with one word.
+    pub fn fill_first(self, buffers: &[&Buffer], bytes: u64, word: u32) -> Result<()> {
         self.record(None, |pass| {
             for buffer in buffers {
                 pass.frame.keep(buffer.owner.clone());
                 let (raw, commands) = (&pass.frame.device.raw, pass.frame.commands);
                 // SAFETY: recording; the buffer is kept.
-                unsafe { raw.cmd_fill_buffer(commands, buffer.raw, 0, vk::WHOLE_SIZE, word) };
+                unsafe { raw.cmd_fill_buffer(commands, buffer.raw, 0, bytes, word) };
             }
             Ok(())
         })

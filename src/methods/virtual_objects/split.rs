@@ -48,6 +48,9 @@ pub struct Split {
 const PIXELS_A_CORNER: u32 = 2;
 const LEAST_CORNERS: u32 = 1 << 16;
 
+/// Bytes before the triangles of the longest head of a list; what is not counted there is never read.
+const HEAD: u64 = 32;
+
 /// Corners that can be made for a view of `size` pixels.
 pub fn corners_made([width, height]: [u32; 2]) -> u32 {
     (width * height / PIXELS_A_CORNER).max(LEAST_CORNERS)
@@ -90,13 +93,14 @@ impl Split {
         mirror: &Mirror,
         record: &ReflectionRecord,
     ) -> Result<()> {
-        frame.pass("virtual-objects/clear").fill(&[&self.drawn, &self.generations[0]], 0)?;
+        let lists = [&self.drawn, &self.generations[0]];
+        frame.pass("virtual-objects/clear").fill_first(&lists, HEAD, 0)?;
         for generation in 0..=self.most {
             let [before, after] = match generation % 2 {
                 0 => [&self.generations[0], &self.generations[1]],
                 _ => [&self.generations[1], &self.generations[0]],
             };
-            frame.pass("virtual-objects/clear").fill(&[after], 0)?;
+            frame.pass("virtual-objects/clear").fill_first(&[after], HEAD, 0)?;
             let split = SplitUniform {
                 vertices: source.count,
                 triangles: source.triangle_count,
