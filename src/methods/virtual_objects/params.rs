@@ -19,8 +19,8 @@ pub const PARAMS: &[Param] = &[
         kind: Kind::IntegerOrAuto { min: 16, max: 8192 },
         defaults: &["auto"],
         needs: None,
-        doc: "texels across the reflector's textures (unstated); auto: the view's width, half of it where \
-              fitted",
+        doc: "texels across the reflector's textures (unstated); auto: the view's width, its larger \
+              side where fitted",
     },
     Param {
         name: "widening",

@@ -81,11 +81,12 @@ impl Rule {
         defines
     }
 
-    /// Width and height of the textures for a view of that size. Fitted ones are square, and half as
-    /// many texels across as the view's larger side unless forced; the others have the view's shape.
+    /// Width and height of the textures for a view of that size. Fitted ones are square, with as many
+    /// texels across as the view's larger side has pixels unless forced: with half as many, noise at the
+    /// rim halves three times as many triangles. The others have the view's shape.
     pub fn texture_size(&self, [width, height]: [u32; 2]) -> [u32; 2] {
         if self.fitted {
-            return [self.texture.unwrap_or((width.max(height) / 2).max(16)); 2];
+            return [self.texture.unwrap_or(width.max(height).max(16)); 2];
         }
         let Some(forced) = self.texture else { return [width, height] };
         let shape = f64::from(height) / f64::from(width);

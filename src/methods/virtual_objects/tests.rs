@@ -31,7 +31,7 @@ fn columns() -> (Scene, ObjectId) {
     let mut scene = scene::load("columns").unwrap();
     let reflector = scene.reflectors()[0];
     let mesh = scene.objects[reflector as usize].mesh;
-    scene.meshes[mesh] = sphere(1.0, 512, 256);
+    scene.meshes[mesh] = sphere(1.0, 1024, 512);
     (scene, reflector)
 }
 
