@@ -57,3 +57,13 @@ fn what_breaks_the_law_of_reflection_is_flagged_and_nothing_else() {
     assert!(doubted[0] * 100 >= 99 * far, "{} of {far} flagged", doubted[0]);
     assert!(doubted[1] * 100 <= near, "{} of {near} flagged for nothing", doubted[1]);
 }
+
+#[test]
+fn a_published_search_may_start_coarse_to_fine() {
+    let (session, scene) = (Session::open(), scene::load("columns").unwrap());
+    let [centre, pyramid] = ["centre", "pyramid"].map(|start| {
+        let case = format!("virtual-objects:start={start}");
+        judged(&session, &scene, &case, [160, 120], 0).1.bad_share.one
+    });
+    assert!(pyramid < centre + 0.02, "{pyramid:?} for {centre:?}");
+}

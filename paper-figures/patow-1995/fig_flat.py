@@ -11,6 +11,7 @@ z-buffered map could serve all reflectors of a scene (section 7).
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import NullLocator
 
 from mirrorfigures import bench, main, paths
 from mirrorfigures.charts import COLOURS, GRID, MARKERS
@@ -118,6 +119,8 @@ def chart(column, label, x, costs, exponents):
             axis.plot(x, y, color=colour, marker=marker, ms=5, label=f"{name}: {power:+.2f}")
     for axis in column:
         axis.set(xscale="log", xlabel=f"{label} (log)")
+        axis.set_xticks(x, [f"{place:,.0f}" for place in x])
+        axis.xaxis.set_minor_locator(NullLocator())
         axis.grid(True, which="both", color=GRID, lw=0.6)
         axis.legend(fontsize=7.5)
     column[0].set_yscale("log")

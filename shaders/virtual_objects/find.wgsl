@@ -63,8 +63,13 @@ fn point_from(place: vec2<f32>, is_known: bool, v: vec3<f32>) -> ReflectionPoint
     // an open reflector by its edge.
     let p = point_at(texel).xyz;
     let n = normal_at(texel);
-    let holds = -quality(texel, v, false) < EDGE_LAW * EDGE_LAW;
-    return ReflectionPoint(begin, p, n, 0u, holds || grazes(p, n));
+#ifdef HIDDEN_CLIP
+    let found = -quality(texel, v, false) < EDGE_LAW * EDGE_LAW || grazes(p, n);
+#else
+    // As published: of hidden vertices, too, the best there is.
+    let found = true;
+#endif
+    return ReflectionPoint(begin, p, n, 0u, found);
 }
 
 // The eye sees the reflector's rim there.
