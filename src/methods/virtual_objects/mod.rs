@@ -135,7 +135,9 @@ impl ReflectionMethod for VirtualObjects {
             let (rule, clips) = (&self.rule, self.rule.clips);
             let split = clips.then(|| Split::new(&device, rule, self.mode, &source, self.size));
             let made = if clips { split::corners_made(self.size) } else { 0 };
-            let found = Found::new(&device, source.count, want.reflectors.len(), made)?;
+            // Who starts from the pyramid needs no texels of the frame before.
+            let kept = if rule.starts_at_pyramid { 0 } else { want.reflectors.len() };
+            let found = Found::new(&device, source.count, kept, made)?;
             self.state = Some(State { source, found, split: split.transpose()? });
         }
         Ok(())

@@ -85,12 +85,13 @@ pub struct Mirror<'a> {
 }
 
 impl Found {
-    /// For so many vertices and reflectors, and so many corners made beside the vertices.
+    /// For so many vertices, so many reflectors whose texels are kept, and so many corners made beside
+    /// the vertices.
     ///
     /// # Errors
     /// [`crate::error::Error::Device`] with the numbers when a list is beyond the device's limits.
     pub fn new(device: &Arc<Device>, count: u32, reflectors: usize, made: u32) -> Result<Found> {
-        let bytes = 4 * u64::from(count) * reflectors as u64;
+        let bytes = (4 * u64::from(count) * reflectors as u64).max(16);
         let corners = size_of::<Corner>() as u64 * (u64::from(count) + u64::from(made));
         Ok(Found {
             corners: Buffer::storage(device, "reflected corners", corners)?,
