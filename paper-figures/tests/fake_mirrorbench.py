@@ -17,7 +17,10 @@ from PIL import Image
 CENTRE, RADIUS = np.array([0.0, 1.0, 0.0]), 1.0
 NO_OBJECT = 0xFFFFFFFF
 COLOURS = np.array([[0.8, 0.1, 0.1], [0.1, 0.6, 0.1], [0.1, 0.2, 0.8], [0.8, 0.7, 0.1]])
-COUNTERS = ("fetches", "hits", "visits", "texels", "texels-again", "texels-skipped", "map-reads")
+COUNTERS = (
+    "fetches", "hits", "visits", "texels", "texels-again", "texels-skipped", "map-reads", "nodes", "triangles",
+    "evaluations", "halved", "no-room",
+)  # fmt: skip
 FLOOR = len(COLOURS)
 MIRROR = FLOOR + 1
 FACES = [  # +X -X +Y -Y +Z -Z: forward, right, down of each face's image
@@ -190,11 +193,12 @@ def row(scene: str, case: str, size: list[int], frame: int, timed: bool, baselin
     ratio = {"baseline": baseline, "rounds": 20, "frame": compared, "with_prepare": compared}
     gpu = {"median": scale / 2, "min": scale / 2, "p95": scale / 2}
     waves = ("scene/deform", "scene/vertices") if "wobble" in scene else ()
-    steps = (*waves, "direct-view/shade", f"{case.split(':')[0]}/reflect")
+    method = re.split("[:@]", case)[0]
+    steps = (*waves, "direct-view/shade", f"{method}/reflect")
     return {
         "schema_version": 2, "run": "toy", "commit": "0123456789abcdef",
         "scene": {"name": scene, "hash": "0", "triangles": 12, "vertices": 8, "objects": objects},
-        "case": case, "method": case.split(":")[0], "variant": "published", "params": {},
+        "case": case, "method": method, "variant": "published", "params": {},
         "fallback": "none", "size": size, "frames": [frame],
         "record": "full", "truth_frames": [frame], "device": device, "software_timing": True,
         "reflector_pixels": 1000.0,
@@ -279,7 +283,7 @@ def main() -> int:
             frames = arrays["path"] = path(case, first, end)
             answer["stability"] = {
                 "frames": [first, end - 1], "jitter_px": frames[1]["jitter_px"], "pops": 1,
-                "temporal_error": None, "points": 900.0, "covered": 0.8, "speed_px": 1.5,
+                "temporal_error": 0.01, "points": 900.0, "covered": 0.8, "speed_px": 1.5,
             }  # fmt: skip
             arrays["path_counters"] = [
                 {"searches": 10, "steps": 20 + f["frame"] % 7, "max-steps": 9} for f in frames
