@@ -13,7 +13,7 @@ use mirrorbench::experiment::engine::{Engine, Fallback, FrameTimes, RunOptions};
 use mirrorbench::geometry::Ray;
 use mirrorbench::measure::PathMeasure;
 use mirrorbench::methods::Case;
-use mirrorbench::scene::{NO_OBJECT, ObjectId, Scene};
+use mirrorbench::scene::{FrameRecord, NO_OBJECT, ObjectId, Scene};
 use mirrorbench::truth::{Cache, Tracer, TruthOptions};
 
 const SIZE: [u32; 2] = [128, 96];
@@ -203,6 +203,25 @@ fn a_mirrored_point_of_the_wave_is_where_the_record_says() {
     };
     assert!(shows(red) > 15, "{} pixels show the red ball", shows(red));
     assert!(accuracy.displacement_px.unwrap().p95 < 0.05);
+}
+
+#[test]
+fn what_a_mirror_shows_of_the_wave_is_drawn_where_it_is() {
+    let (session, scene) = (Session::open(), balls("", WOBBLE));
+    let red = scene.select("red")[0];
+    let case = "virtual-objects@revised";
+    let mut engine = engine(&session, &scene, case, &options(SIZE));
+    engine.frame(&scene.at(0), true).unwrap();
+    let (tested, _) = engine.frame(&scene.at(6), false).unwrap();
+    // Against the truth of another moment the red ball's outline differs; against its own it does not.
+    let differing = |at: u32| {
+        let truth = Tracer::new(&scene, &scene.at(at), TruthOptions::default()).frame(SIZE);
+        let shows = |frame: &FrameRecord, i: usize| frame.record.ids[i].object == red;
+        let mirrors = truth.reflector_pixels().into_iter();
+        mirrors.filter(|&i| shows(&truth, i) != shows(&tested, i)).count()
+    };
+    let (own, other) = (differing(6), differing(18));
+    assert!(own <= 3 && other > 2 * own + 3, "{own} at the moment drawn, {other} half a wave later");
 }
 
 #[test]

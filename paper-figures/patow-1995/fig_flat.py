@@ -20,10 +20,10 @@ OWN, SHARED = "z-buffered-map", "z-buffered-map:map=scene"
 REVISED = "z-buffered-map@revised:size=256,layers=2"
 COUNTED = {OWN: "texels", REVISED: "visits"}
 LABELS = {OWN: "published, texels examined", REVISED: "revised, cells visited"}
-VIEW = "128x128"
-SIDES = [96, 128, 192, 256]
+VIEW = "384x384"
+SIDES = [128, 256, 384, 512]
 REFLECTORS = [1, 2, 4]
-SLICES = [4, 10, 24]
+SLICES = [4, 10, 24, 72]
 
 BALL = """[[objects]]
 name = "sphere"

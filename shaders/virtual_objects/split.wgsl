@@ -126,12 +126,14 @@ fn room_for(number: u32) -> u32 {
     return select(place, split.room, is_full);
 }
 
-// How far along an edge its middle is looked at, where the edge counts at all.
+// The part of an edge that is reflected.
 struct Edge {
-    // Both ends are reflected, or one of them and how far from it the border is.
+    // Whether any of it is: an end that is reflected is `near`.
     counts: bool,
     near: Corner,
+    // The other end, or, where that is hidden, where the edge leaves the reflector's shadow.
     far: Corner,
+    // Share of the edge that lies between the two.
     border: f32,
 }
 

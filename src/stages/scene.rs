@@ -1,6 +1,7 @@
 //! The scene on the GPU: geometry, materials and images once, poses and what changes its shape each
 //! frame.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
@@ -112,7 +113,8 @@ pub struct GpuScene {
     /// Whether each mesh has an inside.
     closed: Vec<bool>,
     moment: Moment,
-    /// This frame's poses, uploaded by [`GpuScene::pose`].
+    /// This frame's vertices of each mesh that wobbles, and all poses: set by [`GpuScene::pose`].
+    deformed: BTreeMap<usize, Vec<Vertex>>,
     objects: Option<Slice>,
 }
 
@@ -145,6 +147,7 @@ impl GpuScene {
             ranges,
             closed: scene.meshes.iter().map(Mesh::is_closed).collect(),
             moment: scene.at(0),
+            deformed: BTreeMap::new(),
             objects: None,
             scene: scene.clone(),
         })
@@ -167,8 +170,14 @@ impl GpuScene {
             })?;
             let offset = u64::from(self.first_vertices[mesh]) * size_of::<Vertex>() as u64;
             frame.pass("scene/vertices").copy(&self.vertices, offset, &vertices)?;
+            self.deformed.insert(mesh, vertices);
         }
         Ok(())
+    }
+
+    /// The object's vertices where its surface is this frame; none for what keeps its shape.
+    pub fn deformed(&self, object: ObjectId) -> Option<&[Vertex]> {
+        self.deformed.get(&self.scene.objects[object as usize].mesh).map(Vec::as_slice)
     }
 
     /// The objects with some reflectors marked as selected, for passes meant for those alone.

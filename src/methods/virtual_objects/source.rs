@@ -106,12 +106,9 @@ impl Source {
     /// Move the vertices of what wobbles to where the scene's are now.
     pub fn pose(&self, frame: &mut Frame, scene: &GpuScene) -> Result<()> {
         for (object, &first) in self.first_vertices.iter().enumerate() {
-            let object = object as ObjectId;
-            if scene.scene.wobbles(object) {
-                let vertices: Vec<Vertex> =
-                    Vertex::of(&scene.scene.mesh_at(scene.moment(), object)).collect();
+            if let Some(vertices) = scene.deformed(object as ObjectId) {
                 let offset = u64::from(first) * size_of::<Vertex>() as u64;
-                frame.pass("virtual-objects/vertices").copy(&self.vertices, offset, &vertices)?;
+                frame.pass("virtual-objects/vertices").copy(&self.vertices, offset, vertices)?;
             }
         }
         Ok(())
