@@ -23,7 +23,7 @@ LABELS = {OWN: "published, texels examined", REVISED: "revised, cells visited"}
 VIEW = "384x384"
 SIDES = [128, 256, 384, 512]
 REFLECTORS = [1, 2, 4]
-SLICES = [4, 10, 24, 72]
+SLICES = [4, 24, 72]
 
 BALL = """[[objects]]
 name = "sphere"
