@@ -229,8 +229,8 @@ def path(case: str, first: int, end: int) -> list[dict]:
 
 def main() -> int:
     parser = argparse.ArgumentParser()
-    parser.add_argument("command", choices=["list", "render", "bench", "doctor"])
-    parser.add_argument("what", nargs="?")
+    parser.add_argument("command", choices=["list", "render", "bench", "diff", "doctor"])
+    parser.add_argument("what", nargs="*")
     parser.add_argument("--scene")
     parser.add_argument("--case", action="append")
     parser.add_argument("--size", default="160x90")
@@ -247,6 +247,8 @@ def main() -> int:
     args = parser.parse_args()
     if args.command == "list":
         print("toy device")
+    if args.command == "diff":
+        print(json.dumps({"accuracy": row("", "environment-map", [16, 9], 0, False, "")["accuracy"]}))
     if log := os.environ.get("FAKE_MIRRORBENCH_LOG"):
         with open(log, "a", encoding="utf-8") as file:
             file.write(" ".join(sys.argv[1:]) + "\n")
