@@ -2,12 +2,17 @@
 // hides is told first, then the pyramid is descended, then Gauss-Newton steps find the point.
 #define_import_path virtual_objects::find
 
-#import common::camera::arriving
 #import virtual_objects::corner::{BORDER, Corner, HIDDEN, LOST, SHOWN, packed_found}
 #import virtual_objects::newton::{ReflectionPoint, newton}
 #import virtual_objects::reflector::{
-    NOWHERE, camera, image_of, normal_at, point_at, quality, search, texel_of, unpacked_texel
+    NOWHERE, arriving_near, image_of, normal_at, point_at, quality, search, unpacked_texel
 }
+#ifdef SECOND
+#import virtual_objects::reflector::first_near
+#import virtual_objects::second::texel_of
+#else
+#import virtual_objects::reflector::texel_of
+#endif
 #import virtual_objects::walk::{best_at_top, descent}
 
 // Cosine between normal and eye at a closed reflector's rim, at most.
@@ -64,7 +69,7 @@ fn point_from(place: vec2<f32>, is_known: bool, v: vec3<f32>) -> ReflectionPoint
     let p = point_at(texel).xyz;
     let n = normal_at(texel);
 #ifdef HIDDEN_CLIP
-    let found = -quality(texel, v, false) < EDGE_LAW * EDGE_LAW || grazes(p, n);
+    let found = -quality(texel, v, false) < EDGE_LAW * EDGE_LAW || grazes(begin, p, n);
 #else
     // As published: of hidden vertices, too, the best there is.
     let found = true;
@@ -73,22 +78,28 @@ fn point_from(place: vec2<f32>, is_known: bool, v: vec3<f32>) -> ReflectionPoint
 }
 
 // The eye sees the reflector's rim there.
-fn grazes(p: vec3<f32>, n: vec3<f32>) -> bool {
-    return abs(dot(n, arriving(camera, p))) < RIM;
+fn grazes(place: vec2<f32>, p: vec3<f32>, n: vec3<f32>) -> bool {
+    return abs(dot(n, arriving_near(place, p))) < RIM;
 }
 
 // The corner at a point of the border. There reflected light only grazes the reflector, so the point is
-// its own image.
+// its own image; in the second of two reflectors, the image that the first has of it.
 fn border_corner(v: vec3<f32>) -> Corner {
-    return Corner(v, 0u, v, packed_found(texel_of(v), BORDER));
+    let place = texel_of(v);
+#ifdef SECOND
+    let image = image_of(v, place, first_near(place), vec3(0.0));
+#else
+    let image = v;
+#endif
+    return Corner(v, 0u, image, packed_found(place, BORDER));
 }
 
 fn corner_of(v: vec3<f32>, point: ReflectionPoint) -> Corner {
     let behind = dot(v - point.position, point.normal) < 0.0;
-    if !point.found || (behind && !grazes(point.position, point.normal)) {
+    if !point.found || (behind && !grazes(point.place, point.position, point.normal)) {
         return Corner(v, 0u, v, packed_found(point.place, LOST));
     }
-    let image = image_of(v, point.position, point.normal);
+    let image = image_of(v, point.place, point.position, point.normal);
     return Corner(v, 0u, image, packed_found(point.place, SHOWN));
 }
 

@@ -9,14 +9,19 @@ enable primitive_index;
 #import virtual_objects::residual::{
     camera, displacement, reflector_id, reflector_position
 }
+#ifdef SECOND
+#import virtual_objects::twice::{second_of, twice_at}
+#endif
 
 struct Reflected {
+    // The reflector that shows them, and the one whose pixels they are drawn in: the same, or the one
+    // that shows that reflector.
     reflector: u32,
     // Vertices of the scene.
     vertices: u32,
     // Pixels a fragment may be from where it belongs without a flag; 0: none are flagged.
     residual: f32,
-    pad: u32,
+    first: u32,
 }
 @group(0) @binding(0) var<uniform> reflected: Reflected;
 @group(0) @binding(1) var<storage, read> corners: array<Corner>;
@@ -98,7 +103,7 @@ fn fragment(
 ) -> RecordTargets {
     let pixel = vec2<u32>(in.clip.xy);
     // Two reflectors may share a stencil value; the id image decides.
-    if textureLoad(reflector_id, pixel, 0).x != reflected.reflector {
+    if textureLoad(reflector_id, pixel, 0).x != reflected.first {
         discard;
     }
 #ifndef TWO_SIDED
@@ -112,7 +117,14 @@ fn fragment(
         discard;
     }
 #endif
-    let bounce = textureLoad(reflector_position, pixel, 0).xyz;
+    var bounce = textureLoad(reflector_position, pixel, 0).xyz;
+#ifdef SECOND
+    let twice = twice_at(pixel, reflected.first, bounce);
+    if !twice.is_shown || twice.second != reflected.reflector {
+        discard;
+    }
+    bounce = twice.position;
+#endif
     let source = Surface(in.clip, in.position, in.normal, in.uv, in.object);
     let colour = surface_colour(source, in.position - bounce);
     let rank = objects[reflected.reflector].rank;
@@ -125,5 +137,8 @@ fn fragment(
     if reflected.residual > 0.0 {
         chain.flag = displacement(pixel, in.position) > reflected.residual;
     }
+#ifdef SECOND
+    chain = second_of(chain, twice);
+#endif
     return record_targets(chain);
 }

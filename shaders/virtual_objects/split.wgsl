@@ -10,6 +10,9 @@
     border_between, border_corner, corner_near, hidden_corner, steps
 }
 #import virtual_objects::reflector::{evaluations, point_at}
+#ifdef SECOND
+#import virtual_objects::reflector::shown_pixels
+#endif
 
 struct Split {
     // Vertices and triangles of the scene.
@@ -171,7 +174,7 @@ fn errs(corner: Corner, drawn_at: vec3<f32>, near: Corner, far: Corner) -> bool 
     let slope = max(slope_between(near, corner), slope_between(corner, far));
     let bounce = point_at(vec2<i32>(place_of(corner))).xyz;
     return error > split.tolerance
-        || error * slope > DEPTH_TOLERANCE * distance(corner.image, bounce);
+        || error * slope > DEPTH_TOLERANCE * distance(corner.position, bounce);
 }
 
 // The middles of a triangle's edges, and whether they are to be halved there; the fourth is the
@@ -373,6 +376,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= total {
         return;
     }
+#ifdef SECOND
+    if shown_pixels[split.reflector] == 0u {
+        return;
+    }
+#endif
     let t = triangle_at(id.x);
     if owners[source_indices[3u * t.w]] == split.reflector {
         return;

@@ -12,29 +12,32 @@
 //! `@revised`: textures that show all of the reflector, searches from coarse to fine that end between
 //! texels and remember nothing, hidden parts cut off along the reflector's shadow volume, triangles halved
 //! where their middles are drawn in the wrong place, and a flag where the law of reflection is broken.
+//!
+//! `bounces=2`: mirrors seen in mirrors reflect too, see `second`.
 
+mod draw;
 mod params;
 mod pyramid;
 mod rule;
 mod search;
+mod second;
 mod source;
 mod split;
 #[cfg(test)]
 mod tests;
 
-use bytemuck::{Pod, Zeroable};
-
 use crate::error::Result;
-use crate::gpu::{Attachments, Depth, Frame, GraphicsPipeline, Load, Stencil};
+use crate::gpu::Frame;
 use crate::scene::ObjectId;
 use crate::stages::{
-    CameraUniform, Footprint, GBuffer, GpuScene, MirroredEnvironment, RecordMode, ReflectionRecord,
-    View,
+    CameraUniform, GBuffer, GpuScene, MirroredEnvironment, RecordMode, ReflectionRecord, View,
 };
 
 use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
+use draw::{Drawing, Reflected};
 use rule::Rule;
 use search::{Found, Mirror, Search};
+use second::{Before, Second};
 use source::{Lists, Source};
 use split::Split;
 
@@ -48,8 +51,8 @@ pub const INFO: MethodInfo = MethodInfo {
     refracts: false,
     variants: &["published", "revised"],
     params: params::PARAMS,
-    limits: "one reflection a vertex and reflector, so convex reflectors; one bounce; @published: straight \
-             between vertices",
+    limits: "one reflection a vertex and reflector, so convex reflectors; one bounce, or \
+             two; @published: straight between vertices",
     passes: &[
         "virtual-objects/subdivide",
         "virtual-objects/vertices",
@@ -63,20 +66,13 @@ pub const INFO: MethodInfo = MethodInfo {
         "virtual-objects/clear",
         "virtual-objects/split",
         "virtual-objects/reflected",
+        "virtual-objects/shown",
+        "virtual-objects/second-background",
+        "virtual-objects/second-gbuffer",
     ],
     counters: &["searches", "steps", "evaluations", "max-steps", "hidden", "halved", "no-room"],
     new: Some(new),
 };
-
-/// WGSL `Reflected` of `shaders/virtual_objects/reflected.wgsl`.
-#[derive(Clone, Copy, Pod, Zeroable)]
-#[repr(C)]
-struct ReflectedUniform {
-    reflector: ObjectId,
-    vertices: u32,
-    residual: f32,
-    pad: u32,
-}
 
 struct VirtualObjects {
     rule: Rule,
@@ -85,7 +81,7 @@ struct VirtualObjects {
     environment: MirroredEnvironment,
     gbuffer: GBuffer,
     search: Search,
-    reflected: GraphicsPipeline,
+    drawing: Drawing,
     /// What is reflected and where it was found; made by the first `prepare`.
     state: Option<State>,
 }
@@ -95,6 +91,8 @@ struct State {
     found: Found,
     /// Where hidden parts are cut off.
     split: Option<Split>,
+    /// What mirrors show of mirrors.
+    second: Option<Second>,
 }
 
 fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
@@ -105,23 +103,12 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         environment: MirroredEnvironment::new(device, mode)?,
         gbuffer: GBuffer::new(device, texels, rule.format)?,
         search: Search::new(device, &rule, mode, texels)?,
-        reflected: reflected_pipeline(setup, &rule)?,
+        drawing: Drawing::new(device, &rule, mode)?,
         state: None,
         rule,
         mode,
         size,
     }))
-}
-
-fn reflected_pipeline(setup: &Setup, rule: &Rule) -> Result<GraphicsPipeline> {
-    let attachments = Attachments {
-        colours: setup.mode.formats(),
-        depth_stencil: true,
-        depth: Depth::Nearest,
-        stencil: Stencil::Within,
-    };
-    let file = "virtual_objects/reflected.wgsl";
-    GraphicsPipeline::new(setup.device, file, &rule.defines(setup.mode), &attachments)
 }
 
 impl ReflectionMethod for VirtualObjects {
@@ -138,7 +125,12 @@ impl ReflectionMethod for VirtualObjects {
             // Who starts from the pyramid needs no texels of the frame before.
             let kept = if rule.starts_at_pyramid { 0 } else { want.reflectors.len() };
             let found = Found::new(&device, source.count, kept, made)?;
-            self.state = Some(State { source, found, split: split.transpose()? });
+            let objects = scene.scene.objects.len();
+            let second = rule
+                .twice
+                .then(|| Second::new(&device, rule, self.mode, self.size, &source, objects));
+            let (split, second) = (split.transpose()?, second.transpose()?);
+            self.state = Some(State { source, found, split, second });
         }
         Ok(())
     }
@@ -150,7 +142,7 @@ impl ReflectionMethod for VirtualObjects {
         view: &View,
         record: &mut ReflectionRecord,
     ) -> Result<()> {
-        let Some(State { source, found, split }) = &self.state else { return Ok(()) };
+        let Some(State { source, found, split, second }) = &self.state else { return Ok(()) };
         source.pose(frame, scene)?;
         self.environment.fill(frame, scene, "virtual-objects", view, record)?;
         for (place, &object) in view.reflectors.iter().enumerate() {
@@ -164,13 +156,20 @@ impl ReflectionMethod for VirtualObjects {
                 gbuffer,
                 camera: &camera,
                 cut: view.cut,
+                first: None,
             };
             self.search.run(frame, scene, source, found, &mirror, record)?;
             if let Some(split) = split {
                 let parts = (source, found, &self.search);
                 split.run(frame, view, parts, &mirror, record)?;
             }
-            self.draw(frame, scene, view, record, object)?;
+            let split = split.as_ref();
+            let what = Reflected { source, found, split, reflector: object, first: None };
+            self.drawing.run(frame, scene, view, record, what)?;
+            if let (Some(second), Some(split)) = (second, split) {
+                let before = Before { source, found, split, mirror: &mirror };
+                second.run(frame, scene, view, &before, record)?;
+            }
         }
         Ok(())
     }
@@ -184,47 +183,5 @@ impl VirtualObjects {
         }
         let points = scene.scene.closed_points_of(scene.moment(), object);
         view.camera.fitted(&points).unwrap_or_else(|| view.camera.widened(2.0))
-    }
-
-    /// Draw what was found for one reflector into its pixels.
-    fn draw(
-        &self,
-        frame: &mut Frame,
-        scene: &GpuScene,
-        view: &View,
-        record: &ReflectionRecord,
-        reflector: ObjectId,
-    ) -> Result<()> {
-        let Some(State { source, found, split }) = &self.state else { return Ok(()) };
-        let reflected = ReflectedUniform {
-            reflector,
-            vertices: source.count,
-            residual: self.rule.residual_px,
-            pad: 0,
-        };
-        let pass = frame.pass("virtual-objects/reflected").graphics(&self.reflected);
-        let mut pass = record
-            .attach(view.bind(scene.bind(pass)))
-            .uniform("reflected", &reflected)
-            .buffer("vertices", &source.vertices)
-            .buffer("corners", &found.corners)
-            .buffer("source_triangles", &source.triangles)
-            .buffer("first_triangles", &source.first_triangles)
-            .optional();
-        if let Some(split) = split {
-            pass = pass
-                .buffer("owners", &source.owners)
-                .buffer("source_indices", &source.indices)
-                .buffer("drawn", &split.drawn);
-        }
-        pass.depth_stencil(&view.footprint.depth_stencil, Load::Clear([0.0; 4]), Load::Keep).draw(
-            |draw| {
-                draw.stencil_reference(Footprint::stencil_of(reflector));
-                match split {
-                    Some(split) => split.draw(draw),
-                    None => source.draw(draw, reflector),
-                }
-            },
-        )
     }
 }

@@ -82,6 +82,17 @@ pub struct Mirror<'a> {
     pub camera: &'a CameraUniform,
     /// What the frame before found is void.
     pub cut: bool,
+    /// Where it is seen, if not by the eye.
+    pub first: Option<First<'a>>,
+}
+
+/// The reflector that another one is seen in.
+#[derive(Clone, Copy)]
+pub struct First<'a> {
+    /// Its points and normals, at the texels of the other's.
+    pub gbuffer: &'a GBuffer,
+    /// Pixels of the view that show the other in it, by object.
+    pub shown_pixels: &'a Buffer,
 }
 
 impl Found {
@@ -177,8 +188,15 @@ impl Search {
             .uniform("camera", mirror.camera)
             .sample("mirror_position", &mirror.gbuffer.position)
             .sample("mirror_normal", &mirror.gbuffer.normal);
-        match &self.pyramid {
+        let pass = match &self.pyramid {
             Some(pyramid) => pass.sample("mirror_cells", &pyramid.cells).optional(),
+            None => pass,
+        };
+        match mirror.first {
+            Some(first) => pass
+                .sample("first_position", &first.gbuffer.position)
+                .sample("first_normal", &first.gbuffer.normal)
+                .buffer("shown_pixels", first.shown_pixels),
             None => pass,
         }
     }
