@@ -6,6 +6,7 @@
 pub mod case;
 mod distance_impostor;
 mod environment_map;
+mod explosion_map;
 pub mod nearest;
 mod none;
 pub mod params;
@@ -156,4 +157,5 @@ pub static METHODS: &[MethodInfo] = &[
     distance_impostor::INFO,
     screen_space::INFO,
     virtual_objects::INFO,
+    explosion_map::INFO,
 ];
