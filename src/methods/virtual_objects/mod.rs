@@ -21,7 +21,6 @@ mod pyramid;
 mod rule;
 mod search;
 mod second;
-mod source;
 mod split;
 #[cfg(test)]
 mod tests;
@@ -33,12 +32,12 @@ use crate::stages::{
     CameraUniform, GBuffer, GpuScene, MirroredEnvironment, RecordMode, ReflectionRecord, View,
 };
 
+use super::source::{self, Lists, Source};
 use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
-use draw::{Drawing, Reflected};
+use draw::{Drawing, Drawn};
 use rule::Rule;
 use search::{Found, Mirror, Search};
 use second::{Before, Second};
-use source::{Lists, Source};
 use split::Split;
 
 pub const INFO: MethodInfo = MethodInfo {
@@ -143,7 +142,7 @@ impl ReflectionMethod for VirtualObjects {
         record: &mut ReflectionRecord,
     ) -> Result<()> {
         let Some(State { source, found, split, second }) = &self.state else { return Ok(()) };
-        source.pose(frame, scene)?;
+        source.pose(frame, scene, "virtual-objects")?;
         self.environment.fill(frame, scene, "virtual-objects", view, record)?;
         for (place, &object) in view.reflectors.iter().enumerate() {
             let camera = self.camera(scene, view, object);
@@ -164,7 +163,7 @@ impl ReflectionMethod for VirtualObjects {
                 split.run(frame, view, parts, &mirror, record)?;
             }
             let split = split.as_ref();
-            let what = Reflected { source, found, split, reflector: object, first: None };
+            let what = Drawn { source, found, split, reflector: object, first: None };
             self.drawing.run(frame, scene, view, record, what)?;
             if let (Some(second), Some(split)) = (second, split) {
                 let before = Before { source, found, split, mirror: &mirror };

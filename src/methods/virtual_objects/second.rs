@@ -13,16 +13,16 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::draw::{Drawing, Reflected};
+use super::draw::{Drawing, Drawn};
 use super::rule::Rule;
 use super::search::{First, Found, Mirror, Search};
-use super::source::Source;
 use super::split::{Split, corners_made};
 use crate::error::Result;
 use crate::gpu::{
     Attachments, Buffer, ComputePipeline, Depth, Device, Format, Frame, GraphicsPipeline, Image,
     Load, Pass, Shape, Stencil,
 };
+use crate::methods::source::Source;
 use crate::scene::{NO_OBJECT, ObjectId};
 use crate::stages::{CameraUniform, GBuffer, GpuScene, RecordMode, ReflectionRecord, View};
 
@@ -230,7 +230,7 @@ impl Second {
         self.search.run(frame, scene, source, &self.found, &mirror, record)?;
         let parts = (source, &self.found, &self.search);
         self.split.run(frame, view, parts, &mirror, record)?;
-        let what = Reflected {
+        let what = Drawn {
             source,
             found: &self.found,
             split: Some(&self.split),

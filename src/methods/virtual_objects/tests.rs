@@ -8,11 +8,12 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3, Vec2, Vec3, Vec4};
 
 use super::rule::Rule;
-use super::search::{Corner, Found, Mirror, Search};
+use super::search::{Found, Mirror, Search};
 use super::source::{Lists, Source};
 use crate::geometry::alhazen::reflected_point;
 use crate::geometry::shapes::sphere;
 use crate::gpu::{Device, Format, Frame};
+use crate::methods::reflected::Corner;
 use crate::methods::{Case, METHODS, Values};
 use crate::scene::{self, Moment, ObjectId, Scene};
 use crate::stages::{CameraUniform, GBuffer, GpuScene, RecordMode, ReflectionRecord};
