@@ -120,7 +120,7 @@ fn mirrored(v: vec3<f32>, p: vec3<f32>, n: vec3<f32>) -> vec3<f32> {
     return v - 2.0 * dot(v - p, n) * n;
 }
 
-// V' of a vertex that is not hidden, from its reflection point.
+// V' of a vertex that is not hidden, from its reflection point; the place matters in a second bounce alone.
 fn image_of(v: vec3<f32>, place: vec2<f32>, p: vec3<f32>, n: vec3<f32>) -> vec3<f32> {
 #ifdef SECOND
     // As far behind P1, as the eye sees it, as the path from there is long.
