@@ -13,6 +13,7 @@
 //! texels and remember nothing, hidden parts cut off along the reflector's shadow volume, triangles halved
 //! where their middles are drawn in the wrong place, and a flag where the law of reflection is broken.
 
+mod edges;
 mod params;
 mod pyramid;
 mod rule;
@@ -61,7 +62,10 @@ pub const INFO: MethodInfo = MethodInfo {
         "virtual-objects/cells",
         "virtual-objects/search",
         "virtual-objects/clear",
+        "virtual-objects/measure",
+        "virtual-objects/look",
         "virtual-objects/split",
+        "virtual-objects/cut",
         "virtual-objects/reflected",
     ],
     counters: &["searches", "steps", "evaluations", "max-steps", "hidden", "halved", "no-room"],
@@ -133,7 +137,9 @@ impl ReflectionMethod for VirtualObjects {
                 frame.cpu("virtual-objects/subdivide", || Lists::new(&scene.scene, edge))?;
             let source = lists.upload(&device)?;
             let (rule, clips) = (&self.rule, self.rule.clips);
-            let split = clips.then(|| Split::new(&device, rule, self.mode, &source, self.size));
+            let split = clips.then(|| {
+                Split::new(&device, rule, self.mode, (&source, &lists.indices), self.size)
+            });
             let made = if clips { split::corners_made(self.size) } else { 0 };
             // Who starts from the pyramid needs no texels of the frame before.
             let kept = if rule.starts_at_pyramid { 0 } else { want.reflectors.len() };

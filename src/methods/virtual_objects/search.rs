@@ -35,7 +35,7 @@ pub struct SearchUniform {
 #[repr(C)]
 pub struct Corner {
     pub position: [f32; 3],
-    pub weights: u32,
+    pub pad: u32,
     pub image: [f32; 3],
     /// Texel found, in halves: x | y << 14 | status << 28.
     pub found: u32,
@@ -159,7 +159,7 @@ impl Search {
             .over(source.count)
     }
 
-    /// Bind what searches of a reflector look at.
+    /// Bind what searches of a reflector look at; who knows some of it needs no more.
     pub fn bind<'f>(&'f self, pass: Pass<'f>, mirror: &Mirror<'f>) -> Pass<'f> {
         let search = SearchUniform {
             total: mirror.vertices,
@@ -174,9 +174,13 @@ impl Search {
         };
         let pass = pass
             .storage_struct("search", &search)
+            .optional()
             .uniform("camera", mirror.camera)
+            .optional()
             .sample("mirror_position", &mirror.gbuffer.position)
-            .sample("mirror_normal", &mirror.gbuffer.normal);
+            .optional()
+            .sample("mirror_normal", &mirror.gbuffer.normal)
+            .optional();
         match &self.pyramid {
             Some(pyramid) => pass.sample("mirror_cells", &pyramid.cells).optional(),
             None => pass,
@@ -208,7 +212,7 @@ mod tests {
     #[test]
     #[rustfmt::skip]
     fn uniforms_are_laid_out_as_their_wgsl_twins() {
-        assert_layout!("virtual_objects/search.wgsl", "Corner", Corner, position, weights, image, found);
+        assert_layout!("virtual_objects/search.wgsl", "Corner", Corner, position, pad, image, found);
         assert_layout!("virtual_objects/search.wgsl", "Search", SearchUniform,
             total, history, cut, cap, size, threshold, reflector, top, pad_a, pad_b, pad_c);
         assert_layout!("virtual_objects/start.wgsl", "Middle", MiddleUniform, texel, pad);
