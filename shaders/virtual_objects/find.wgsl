@@ -33,48 +33,48 @@ fn is_hidden(v: vec3<f32>) -> bool {
     return p.w == 1.0 && dot(v - p.xyz, normal_at(texel)) < 0.0;
 }
 
-// The reflection point: from a place likely to be near it, if one is known; else, or where that fails,
-// from coarse to fine, as far as Newton's steps reach; else to the best texel and from there.
-// One loop, as drivers that inline all calls take long over many.
-fn point_from(place: vec2<f32>, is_known: bool, v: vec3<f32>) -> ReflectionPoint {
+// The reflection point near a place, as far as Newton's steps reach; where they fail, it is not found.
+fn point_near(place: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
+    var out: ReflectionPoint;
+#ifdef POINT_NEWTON
+    out = newton(place, v);
+    steps += out.steps;
+#endif
+    return out;
+}
+
+// The reflection point from coarse to fine, as far as Newton's steps reach; where they fail, from the best
+// texel; else that. One loop, as drivers that inline all calls take long over many.
+fn point_of(v: vec3<f32>) -> ReflectionPoint {
     var out: ReflectionPoint;
     let near = min(NEAR_LEVEL, search.top);
-    var texel = vec2<i32>(place);
-    var begin = place;
-    for (var attempt = select(1, 0, is_known); attempt < 3; attempt += 1) {
-        if attempt == 1 {
-            let best = best_at_top(v);
-            if best == NOWHERE {
-                return out;
-            }
-            texel = unpacked_texel(best);
-        }
-        if attempt > 0 {
-            let coarsest = select(near - 1, search.top, attempt == 1);
-            let found = descent(texel, coarsest, select(0, near, attempt == 1), v);
-            steps += found.steps;
-            texel = found.cell;
-            begin = vec2<f32>(texel) + 0.5;
-        }
-#ifdef POINT_NEWTON
-        out = newton(begin, v);
-        steps += out.steps;
+    let best = best_at_top(v);
+    if best == NOWHERE {
+        return out;
+    }
+    var texel = unpacked_texel(best);
+    for (var attempt = 0; attempt < 2; attempt += 1) {
+        let coarsest = select(near - 1, search.top, attempt == 0);
+        let found = descent(texel, coarsest, select(0, near, attempt == 0), v);
+        steps += found.steps;
+        texel = found.cell;
+        out = point_near(vec2<f32>(texel) + 0.5, v);
         if out.found {
             return out;
         }
-#endif
     }
     // At the rim between texels the law may hold nowhere: the best texel then. Elsewhere the search left
     // an open reflector by its edge.
     let p = point_at(texel).xyz;
     let n = normal_at(texel);
+    let place = vec2<f32>(texel) + 0.5;
 #ifdef HIDDEN_CLIP
-    let found = -quality(texel, v, false) < EDGE_LAW * EDGE_LAW || grazes(begin, p, n);
+    let found = -quality(texel, v, false) < EDGE_LAW * EDGE_LAW || grazes(place, p, n);
 #else
     // As published: of hidden vertices, too, the best there is.
     let found = true;
 #endif
-    return ReflectionPoint(begin, p, n, 0u, found);
+    return ReflectionPoint(place, p, n, 0u, found);
 }
 
 // The eye sees the reflector's rim there.
@@ -105,14 +105,6 @@ fn corner_of(v: vec3<f32>, point: ReflectionPoint) -> Corner {
 
 fn hidden_corner(v: vec3<f32>) -> Corner {
     return Corner(v, 0u, v, packed_found(texel_of(v), HIDDEN));
-}
-
-// The corner at a world point whose reflection point is likely to be near a place.
-fn corner_near(v: vec3<f32>, place: vec2<f32>) -> Corner {
-    if is_hidden(v) {
-        return hidden_corner(v);
-    }
-    return corner_of(v, point_from(place, true, v));
 }
 
 // Halvings of an edge in search of the border: a thousandth of it.

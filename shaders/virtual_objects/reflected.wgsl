@@ -58,13 +58,17 @@ fn corner_surface(corner: u32, source: u32, object: u32) -> Surface {
     if corner < reflected.vertices {
         return surface_vertex(corner, object);
     }
-    let weights = vec2<f32>(vec2(corners[corner].weights & 0xffffu, corners[corner].weights >> 16u))
-        / 32768.0;
     let a = surface_vertex(source_indices[3u * source], object);
     let b = surface_vertex(source_indices[3u * source + 1u], object);
     let c = surface_vertex(source_indices[3u * source + 2u], object);
     var out = a;
     out.position = corners[corner].position;
+    let one = b.position - a.position;
+    let other = c.position - a.position;
+    let across = cross(one, other);
+    let within = out.position - a.position;
+    let weights = vec2(dot(cross(within, other), across), dot(cross(one, within), across))
+        / max(dot(across, across), 1e-30);
     out.normal += weights.x * (b.normal - a.normal) + weights.y * (c.normal - a.normal);
     out.uv += weights.x * (b.uv - a.uv) + weights.y * (c.uv - a.uv);
     return out;

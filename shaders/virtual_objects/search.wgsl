@@ -12,7 +12,7 @@
 #import virtual_objects::reflector::shown_pixels
 #endif
 #ifdef PYRAMID
-#import virtual_objects::find::{corner_of, hidden_corner, is_hidden, point_from, steps}
+#import virtual_objects::find::{corner_of, hidden_corner, is_hidden, point_of, steps}
 #endif
 
 // Whose vertex each is.
@@ -48,7 +48,7 @@ fn walked_to(begin: vec2<i32>, v: vec3<f32>, inverse: bool) -> ReflectionPoint {
 fn reflection_point(index: u32, v: vec3<f32>) -> ReflectionPoint {
     var out: ReflectionPoint;
 #ifdef START_PYRAMID
-    out = point_from(vec2(0.0), false, v);
+    out = point_of(v);
     out.steps = steps;
 #else
     let begin = first_texel(index);

@@ -27,7 +27,7 @@ struct ReflectedUniform {
 #[repr(C)]
 pub struct Corner {
     pub position: [f32; 3],
-    pub weights: u32,
+    pub pad: u32,
     pub image: [f32; 3],
     /// Texel found, in halves: x | y << 14 | status << 28.
     pub found: u32,
@@ -102,6 +102,6 @@ mod tests {
     fn structs_are_laid_out_as_their_wgsl_twins() {
         assert_layout!("virtual_objects/reflected.wgsl", "Reflected", ReflectedUniform,
             reflector, vertices, residual, first);
-        assert_layout!("virtual_objects/reflected.wgsl", "Corner", Corner, position, weights, image, found);
+        assert_layout!("virtual_objects/reflected.wgsl", "Corner", Corner, position, pad, image, found);
     }
 }

@@ -16,6 +16,7 @@
 //! `bounces=2`: mirrors seen in mirrors reflect too, see `second`.
 
 mod draw;
+mod edges;
 mod params;
 mod pyramid;
 mod rule;
@@ -63,7 +64,10 @@ pub const INFO: MethodInfo = MethodInfo {
         "virtual-objects/cells",
         "virtual-objects/search",
         "virtual-objects/clear",
+        "virtual-objects/measure",
+        "virtual-objects/look",
         "virtual-objects/split",
+        "virtual-objects/cut",
         "virtual-objects/reflected",
         "virtual-objects/shown",
         "virtual-objects/second-background",
@@ -119,15 +123,17 @@ impl ReflectionMethod for VirtualObjects {
                 frame.cpu("virtual-objects/subdivide", || Lists::new(&scene.scene, edge))?;
             let source = lists.upload(&device)?;
             let (rule, clips) = (&self.rule, self.rule.clips);
-            let split = clips.then(|| Split::new(&device, rule, self.mode, &source, self.size));
+            let split = clips.then(|| {
+                Split::new(&device, rule, self.mode, (&source, &lists.indices), self.size)
+            });
             let made = if clips { split::corners_made(self.size) } else { 0 };
             // Who starts from the pyramid needs no texels of the frame before.
             let kept = if rule.starts_at_pyramid { 0 } else { want.reflectors.len() };
             let found = Found::new(&device, source.count, kept, made)?;
             let objects = scene.scene.objects.len();
-            let second = rule
-                .twice
-                .then(|| Second::new(&device, rule, self.mode, self.size, &source, objects));
+            let second = rule.twice.then(|| {
+                Second::new(&device, rule, self.mode, self.size, (&source, &lists.indices), objects)
+            });
             let (split, second) = (split.transpose()?, second.transpose()?);
             self.state = Some(State { source, found, split, second });
         }

@@ -160,7 +160,7 @@ impl Search {
             .over(source.count)
     }
 
-    /// Bind what searches of a reflector look at.
+    /// Bind what searches of a reflector look at; who knows some of it needs no more.
     pub fn bind<'f>(&'f self, pass: Pass<'f>, mirror: &Mirror<'f>) -> Pass<'f> {
         let search = SearchUniform {
             total: mirror.vertices,
@@ -175,9 +175,13 @@ impl Search {
         };
         let pass = pass
             .storage_struct("search", &search)
+            .optional()
             .uniform("camera", mirror.camera)
+            .optional()
             .sample("mirror_position", &mirror.gbuffer.position)
-            .sample("mirror_normal", &mirror.gbuffer.normal);
+            .optional()
+            .sample("mirror_normal", &mirror.gbuffer.normal)
+            .optional();
         let pass = match &self.pyramid {
             Some(pyramid) => pass.sample("mirror_cells", &pyramid.cells).optional(),
             None => pass,
@@ -185,8 +189,11 @@ impl Search {
         match mirror.first {
             Some(first) => pass
                 .sample("first_position", &first.gbuffer.position)
+                .optional()
                 .sample("first_normal", &first.gbuffer.normal)
-                .buffer("shown_pixels", first.shown_pixels),
+                .optional()
+                .buffer("shown_pixels", first.shown_pixels)
+                .optional(),
             None => pass,
         }
     }

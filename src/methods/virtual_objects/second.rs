@@ -152,7 +152,7 @@ impl Second {
         rule: &Rule,
         mode: RecordMode,
         size: [u32; 2],
-        source: &Source,
+        (source, indices): (&Source, &[u32]),
         objects: usize,
     ) -> Result<Second> {
         let rule = &rule.second();
@@ -165,7 +165,7 @@ impl Second {
             gbuffer: GBuffer::new(device, texels, rule.format)?,
             search: Search::new(device, rule, mode, texels)?,
             found: Found::new(device, source.count, 0, corners_made(size))?,
-            split: Split::new(device, rule, mode, source, size)?,
+            split: Split::new(device, rule, mode, (source, indices), size)?,
             drawing: Drawing::new(device, rule, mode)?,
         })
     }
