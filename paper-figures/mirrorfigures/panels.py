@@ -84,7 +84,7 @@ def strip(figure: Figure, scene: str, cases: dict[str, str], frames: tuple[int, 
         axis.set_ylabel(name)
     height, width, _ = traced.colour.shape
     column = max(3.0, 8.4 / len(frames))
-    plot.set_size_inches(column * len(frames), len(axes) * column * height / width + 1.0)
+    plot.set_size_inches(column * len(frames), len(axes) * column * height / width + 0.6)
     plot.get_layout_engine().set(rect=(0, 0.04, 1, 0.95), h_pad=0.02, w_pad=0.03)
     figure.table("Error", ["case", "frame", "bad at 1 px"], rows)
     said = (f"{name}, frame {frame}: bad at 1 px {bad}" for name, frame, bad in rows)
