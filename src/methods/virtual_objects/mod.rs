@@ -13,11 +13,13 @@
 //! texels and remember nothing, hidden parts cut off along the reflector's shadow volume, triangles halved
 //! where their middles are drawn in the wrong place, and a flag where the law of reflection is broken.
 //!
-//! `bounces=2`: mirrors seen in mirrors reflect too, see `second`.
+//! `bounces=2`: mirrors seen in mirrors reflect too, see `second`. Glass is looked through by its first surface,
+//! see `refraction`.
 
 mod draw;
 mod params;
 mod pyramid;
+mod refraction;
 mod rule;
 mod search;
 mod second;
@@ -28,13 +30,14 @@ mod tests;
 
 use crate::error::Result;
 use crate::gpu::Frame;
-use crate::scene::ObjectId;
+use crate::scene::{Lobe, ObjectId};
 use crate::stages::{
     CameraUniform, GBuffer, GpuScene, MirroredEnvironment, RecordMode, ReflectionRecord, View,
 };
 
 use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
 use draw::{Drawing, Reflected};
+use refraction::Refraction;
 use rule::Rule;
 use search::{Found, Mirror, Search};
 use second::{Before, Second};
@@ -48,11 +51,12 @@ pub const INFO: MethodInfo = MethodInfo {
     family: Family::FeedForward,
     depends: Changes { objects: false, reflectors: false, shading: false },
     flags: true,
-    refracts: false,
+    refracts: true,
     variants: &["published", "revised"],
     params: params::PARAMS,
-    limits: "one reflection a vertex and reflector, so convex reflectors; one bounce, or \
-             two; @published: straight between vertices",
+    limits: "one reflection a vertex and reflector, so convex reflectors; one bounce, or two; what glass \
+             lets through by its first surface alone, and not @published, which is straight between \
+             vertices",
     passes: &[
         "virtual-objects/subdivide",
         "virtual-objects/vertices",
@@ -93,6 +97,7 @@ struct State {
     split: Option<Split>,
     /// What mirrors show of mirrors.
     second: Option<Second>,
+    refraction: Option<Refraction>,
 }
 
 fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
@@ -125,12 +130,14 @@ impl ReflectionMethod for VirtualObjects {
             // Who starts from the pyramid needs no texels of the frame before.
             let kept = if rule.starts_at_pyramid { 0 } else { want.reflectors.len() };
             let found = Found::new(&device, source.count, kept, made)?;
-            let objects = scene.scene.objects.len();
-            let second = rule
-                .twice
-                .then(|| Second::new(&device, rule, self.mode, self.size, &source, objects));
+            let (mode, size, objects) = (self.mode, self.size, scene.scene.objects.len());
+            let second =
+                rule.twice.then(|| Second::new(&device, rule, mode, size, &source, objects));
+            let refraction = (clips && scene.scene.refracts())
+                .then(|| Refraction::new(&device, rule, mode, size, &source));
             let (split, second) = (split.transpose()?, second.transpose()?);
-            self.state = Some(State { source, found, split, second });
+            let refraction = refraction.transpose()?;
+            self.state = Some(State { source, found, split, second, refraction });
         }
         Ok(())
     }
@@ -142,7 +149,14 @@ impl ReflectionMethod for VirtualObjects {
         view: &View,
         record: &mut ReflectionRecord,
     ) -> Result<()> {
-        let Some(State { source, found, split, second }) = &self.state else { return Ok(()) };
+        let Some(State { source, found, split, second, refraction }) = &self.state else {
+            return Ok(());
+        };
+        let (search, split, second, drawing) = match (view.lobe, refraction) {
+            (Lobe::Reflected, _) => (&self.search, split.as_ref(), second.as_ref(), &self.drawing),
+            (Lobe::Refracted, Some(r)) => (&r.search, Some(&r.split), None, &r.drawing),
+            (Lobe::Refracted, None) => return Ok(()),
+        };
         source.pose(frame, scene)?;
         self.environment.fill(frame, scene, "virtual-objects", view, record)?;
         for (place, &object) in view.reflectors.iter().enumerate() {
@@ -156,16 +170,15 @@ impl ReflectionMethod for VirtualObjects {
                 gbuffer,
                 camera: &camera,
                 cut: view.cut,
+                index: scene.scene.material_of(object).glass.map_or(1.0, |glass| glass.index),
                 first: None,
             };
-            self.search.run(frame, scene, source, found, &mirror, record)?;
+            search.run(frame, scene, source, found, &mirror, record)?;
             if let Some(split) = split {
-                let parts = (source, found, &self.search);
-                split.run(frame, view, parts, &mirror, record)?;
+                split.run(frame, view, (source, found, search), &mirror, record)?;
             }
-            let split = split.as_ref();
             let what = Reflected { source, found, split, reflector: object, first: None };
-            self.drawing.run(frame, scene, view, record, what)?;
+            drawing.run(frame, scene, view, record, what)?;
             if let (Some(second), Some(split)) = (second, split) {
                 let before = Before { source, found, split, mirror: &mirror };
                 second.run(frame, scene, view, &before, record)?;

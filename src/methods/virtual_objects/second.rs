@@ -225,6 +225,7 @@ impl Second {
             gbuffer: &self.gbuffer,
             camera: first.camera,
             cut: true,
+            index: 1.0,
             first: Some(First { gbuffer: first.gbuffer, shown_pixels: &self.shown.pixels }),
         };
         self.search.run(frame, scene, source, &self.found, &mirror, record)?;
