@@ -5,7 +5,7 @@
 #import virtual_objects::corner::{BORDER, Corner, HIDDEN, LOST, SHOWN, packed_found}
 #import virtual_objects::newton::{ReflectionPoint, newton}
 #import virtual_objects::reflector::{
-    NOWHERE, arriving_near, image_of, normal_at, point_at, quality, search, unpacked_texel
+    NOWHERE, arriving_near, image_of, is_out_of_sight, normal_at, point_at, quality, search, unpacked_texel
 }
 #ifdef SECOND
 #import virtual_objects::reflector::first_near
@@ -26,11 +26,11 @@ const NEAR_LEVEL: i32 = 3;
 var<private> steps: u32;
 
 // Behind the reflector: of a closed convex one the region without reflection is the solid it hides from
-// the eye, so no search is needed to tell.
+// the eye, so no search is needed to tell. Where what is refracted is sought: before the surface.
 fn is_hidden(v: vec3<f32>) -> bool {
     let texel = vec2<i32>(floor(texel_of(v)));
     let p = point_at(texel);
-    return p.w == 1.0 && dot(v - p.xyz, normal_at(texel)) < 0.0;
+    return p.w == 1.0 && is_out_of_sight(v, p.xyz, normal_at(texel));
 }
 
 // The reflection point near a place, as far as Newton's steps reach; where they fail, it is not found.
@@ -95,7 +95,7 @@ fn border_corner(v: vec3<f32>) -> Corner {
 }
 
 fn corner_of(v: vec3<f32>, point: ReflectionPoint) -> Corner {
-    let behind = dot(v - point.position, point.normal) < 0.0;
+    let behind = is_out_of_sight(v, point.position, point.normal);
     if !point.found || (behind && !grazes(point.place, point.position, point.normal)) {
         return Corner(v, 0u, v, packed_found(point.place, LOST));
     }

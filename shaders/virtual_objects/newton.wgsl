@@ -1,9 +1,13 @@
 // From near a reflection point to the point itself, between texels: Gauss-Newton steps on N x H, H half
 // way between eye and vertex, over points and normals interpolated from four texels.
+//
+// Refraction has the same form. With unit directions e from P to the eye and v to the vertex behind the surface,
+// of index i over that before it, Snell's law says that along the surface the light's directions, each as long as
+// its side's index, do not change: N x (e + i v) = 0. (Fermat: |EP| + i |PV| is stationary.)
 #define_import_path virtual_objects::newton
 
 #import common::camera::arriving
-#import virtual_objects::reflector::{camera, evaluations, normal_at, point_at}
+#import virtual_objects::reflector::{camera, evaluations, is_out_of_sight, normal_at, point_at, search}
 #ifdef SECOND
 #import virtual_objects::reflector::first_at
 #endif
@@ -158,10 +162,15 @@ fn newton(begin: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
         let sight = sight_of(at);
         let away = max(distance(v, at.p), 1e-9);
         let towards_v = (v - at.p) / away;
-        let h = sight.towards + towards_v;
+#ifdef REFRACTED
+        let index = search.index;
+#else
+        let index = 1.0;
+#endif
+        let h = sight.towards + index * towards_v;
         let law = cross(at.n, h);
-        let h_x = sight.x + turn(towards_v, away, at.p_x);
-        let h_y = sight.y + turn(towards_v, away, at.p_y);
+        let h_x = sight.x + index * turn(towards_v, away, at.p_x);
+        let h_y = sight.y + index * turn(towards_v, away, at.p_y);
         let j_x = cross(at.n_x, h) + cross(at.n, h_x);
         let j_y = cross(at.n_y, h) + cross(at.n, h_y);
         out.place = place;
@@ -179,7 +188,12 @@ fn newton(begin: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
             out.position += at.p_x * delta.x + at.p_y * delta.y;
             out.normal = normalize(at.n + at.n_x * delta.x + at.n_y * delta.y);
         }
+#ifdef REFRACTED
+        // H is short where the index is near 1.
+        out.found = dot(left, left) < LAW * LAW && !is_out_of_sight(v, at.p, at.n);
+#else
         out.found = dot(left, left) < LAW * LAW * dot(h, h) && dot(at.n, h) > 0.0;
+#endif
         if arrived {
             break;
         }

@@ -9,6 +9,9 @@ enable primitive_index;
 #import virtual_objects::residual::{
     camera, displacement, reflector_id, reflector_normal, reflector_position
 }
+#ifdef REFRACTED
+#import bindings::departure::LOBE_REFRACTED
+#endif
 #ifdef SECOND
 #import virtual_objects::twice::{second_of, twice_at}
 #endif
@@ -113,7 +116,12 @@ fn fragment(
     }
 #ifndef TWO_SIDED
     // A mirror turns the winding round, so what looks like a front is a back or was never mirrored.
-    if front {
+#ifdef REFRACTED
+    let is_back = !front;
+#else
+    let is_back = front;
+#endif
+    if is_back {
         discard;
     }
 #endif
@@ -157,6 +165,9 @@ fn fragment(
     if reflected.residual > 0.0 {
         chain.flag = displacement(pixel, in.position) > reflected.residual;
     }
+#ifdef REFRACTED
+    chain.lobe = LOBE_REFRACTED;
+#endif
 #ifdef SECOND
     chain = second_of(chain, twice);
 #endif

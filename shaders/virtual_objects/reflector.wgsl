@@ -21,7 +21,8 @@ struct Search {
     reflector: u32,
     // The coarsest level of the pyramid, where there is one.
     top: i32,
-    pad_a: u32,
+    // Refractive index behind the surface over that before it, where what is refracted is sought.
+    index: f32,
     pad_b: u32,
     pad_c: u32,
 }
@@ -126,11 +127,23 @@ fn image_of(v: vec3<f32>, place: vec2<f32>, p: vec3<f32>, n: vec3<f32>) -> vec3<
     // As far behind P1, as the eye sees it, as the path from there is long.
     let first = first_near(place);
     return first + (distance(first, p) + distance(p, v)) * arriving(camera, first);
+#else ifdef REFRACTED
+    return p + distance(v, p) * arriving(camera, p);
 #else ifdef IMAGE_PUSH
     // At an exact point the same; at one found roughly the plane's error grows with the distance.
     return p + distance(v, p) * arriving(camera, p);
 #else
     return mirrored(v, p, n);
+#endif
+}
+
+// Whether a point is on the side of a plane where it is not seen by the plane's reflection, or not
+// through its refraction.
+fn is_out_of_sight(v: vec3<f32>, p: vec3<f32>, n: vec3<f32>) -> bool {
+#ifdef REFRACTED
+    return dot(v - p, n) > 0.0;
+#else
+    return dot(v - p, n) < 0.0;
 #endif
 }
 
@@ -144,6 +157,12 @@ fn quality(texel: vec2<i32>, v: vec3<f32>, inverse: bool) -> f32 {
     evaluations += 1u;
     let n = normal_at(texel);
     let seen = select(v, mirrored(v, p.xyz, n), inverse);
+#ifdef REFRACTED
+    // Of Snell's law what is left along the surface, see newton.wgsl.
+    let law = cross(n, search.index * normalize(v - p.xyz) - arriving_at(texel, p.xyz));
+    let scale = 1.0 + search.index;
+    return select(-dot(law, law) / (scale * scale), OUTSIDE + 1.0, is_out_of_sight(v, p.xyz, n));
+#else
     let half = normalize(seen - p.xyz) - arriving_at(texel, p.xyz);
 #ifdef OBJECTIVE_CROSS
     // -|N x B|^2, carried on past 90 degrees: N.B is flat at its top and hides small angles there.
@@ -152,5 +171,6 @@ fn quality(texel: vec2<i32>, v: vec3<f32>, inverse: bool) -> f32 {
     return select(-sine, sine - 2.0, dot(n, half) < 0.0);
 #else
     return dot(n, normalize(half));
+#endif
 #endif
 }

@@ -2,6 +2,10 @@
 #define_import_path virtual_objects::residual
 
 #import common::camera::{Camera, arriving}
+#ifdef REFRACTED
+#import bindings::departure::{LOBE_REFRACTED, depart}
+#import bindings::scene::{materials, objects}
+#endif
 #ifdef SECOND
 #import virtual_objects::twice::{shown_normal, shown_position}
 #endif
@@ -23,7 +27,13 @@ fn miss(pixel: vec2<u32>, point: vec3<f32>) -> vec3<f32> {
     let normal = textureLoad(reflector_normal, pixel, 0).xyz;
     let incident = arriving(camera, bounce);
 #endif
-    return reflect(incident, normal) - normalize(point - bounce);
+#ifdef REFRACTED
+    let material = materials[objects[textureLoad(reflector_id, pixel, 0).x].material];
+    let leaving = depart(material, LOBE_REFRACTED, incident, normal, true).direction;
+#else
+    let leaving = reflect(incident, normal);
+#endif
+    return leaving - normalize(point - bounce);
 }
 
 // Whether two pixels show the same reflectors.

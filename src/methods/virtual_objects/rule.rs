@@ -78,12 +78,22 @@ impl Rule {
         }
     }
 
-    /// That of a reflector seen in another one: nothing is remembered of the frame before.
+    /// That of a reflector seen in another one.
     pub fn second(&self) -> Rule {
-        let mut second = self.clone();
-        second.defines.retain(|&(define, _)| define != "START_PYRAMID");
-        second.defines.extend([("START_PYRAMID", 1), ("SECOND", 1)]);
-        Rule { forgets: true, starts_at_pyramid: true, ..second }
+        self.anew("SECOND")
+    }
+
+    /// That of what is seen through a surface.
+    pub fn refracted(&self) -> Rule {
+        self.anew("REFRACTED")
+    }
+
+    /// With one more definition, and nothing remembered of the frame before.
+    fn anew(&self, define: &'static str) -> Rule {
+        let mut rule = self.clone();
+        rule.defines.retain(|&(define, _)| define != "START_PYRAMID");
+        rule.defines.extend([("START_PYRAMID", 1), (define, 1)]);
+        Rule { forgets: true, starts_at_pyramid: true, ..rule }
     }
 
     /// For the method's shaders.

@@ -26,7 +26,7 @@ pub struct SearchUniform {
     threshold: f32,
     reflector: u32,
     top: i32,
-    pad_a: u32,
+    index: f32,
     pad_b: u32,
     pad_c: u32,
 }
@@ -72,6 +72,8 @@ pub struct Mirror<'a> {
     pub camera: &'a CameraUniform,
     /// What the frame before found is void.
     pub cut: bool,
+    /// Refractive index behind its surface over that before it, where what is refracted is sought.
+    pub index: f32,
     /// Where it is seen, if not by the eye.
     pub first: Option<First<'a>>,
 }
@@ -171,6 +173,7 @@ impl Search {
             threshold: self.threshold,
             reflector: mirror.object,
             top: self.pyramid.as_ref().map_or(0, Pyramid::top),
+            index: mirror.index,
             ..Zeroable::zeroed()
         };
         let pass = pass
@@ -224,7 +227,7 @@ mod tests {
     #[rustfmt::skip]
     fn uniforms_are_laid_out_as_their_wgsl_twins() {
         assert_layout!("virtual_objects/search.wgsl", "Search", SearchUniform,
-            total, history, cut, cap, size, threshold, reflector, top, pad_a, pad_b, pad_c);
+            total, history, cut, cap, size, threshold, reflector, top, index, pad_b, pad_c);
         assert_layout!("virtual_objects/start.wgsl", "Middle", MiddleUniform, texel, pad);
     }
 }

@@ -14,6 +14,7 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 
 use super::draw::{Drawing, Drawn};
+use super::edges::Edges;
 use super::rule::Rule;
 use super::search::{First, Found, Mirror, Search};
 use super::split::{Split, corners_made};
@@ -152,7 +153,7 @@ impl Second {
         rule: &Rule,
         mode: RecordMode,
         size: [u32; 2],
-        (source, indices): (&Source, &[u32]),
+        (source, edges): (&Source, &Arc<Edges>),
         objects: usize,
     ) -> Result<Second> {
         let rule = &rule.second();
@@ -165,7 +166,7 @@ impl Second {
             gbuffer: GBuffer::new(device, texels, rule.format)?,
             search: Search::new(device, rule, mode, texels)?,
             found: Found::new(device, source.count, 0, corners_made(size))?,
-            split: Split::new(device, rule, mode, (source, indices), size)?,
+            split: Split::new(device, rule, mode, (source, edges), size)?,
             drawing: Drawing::new(device, rule, mode)?,
         })
     }
@@ -225,6 +226,7 @@ impl Second {
             gbuffer: &self.gbuffer,
             camera: first.camera,
             cut: true,
+            index: 1.0,
             first: Some(First { gbuffer: first.gbuffer, shown_pixels: &self.shown.pixels }),
         };
         self.search.run(frame, scene, source, &self.found, &mirror, record)?;

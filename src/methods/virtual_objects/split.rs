@@ -34,7 +34,7 @@ pub struct SplitUniform {
 /// Pipelines and lists.
 pub struct Split {
     pipelines: Pipelines,
-    edges: Edges,
+    edges: Arc<Edges>,
     /// Spans that are not the scene's edges, and what all are cut into.
     made_spans: Buffer,
     parts: Buffer,
@@ -115,12 +115,11 @@ impl Split {
         device: &Arc<Device>,
         rule: &Rule,
         mode: RecordMode,
-        (source, indices): (&Source, &[u32]),
+        (source, edges): (&Source, &Arc<Edges>),
         size: [u32; 2],
     ) -> Result<Split> {
         let corner_room = corners_made(size);
         let span_room = SPANS_A_CORNER * corner_room;
-        let edges = Edges::new(device, indices)?;
         let storage = |name, words: u64| Buffer::storage(device, name, HEAD + 4 * words);
         let corners = u64::from(corner_room);
         let spans = u64::from(span_room);
@@ -140,7 +139,7 @@ impl Split {
                 "reflected triangles drawn",
                 4 * (u64::from(source.triangle_count) + 2 * corners),
             )?,
-            edges,
+            edges: edges.clone(),
             corner_room,
             span_room,
             tolerance: rule.split_px,

@@ -112,6 +112,7 @@ impl Bench {
             gbuffer: &self.gbuffer,
             camera: &camera,
             cut,
+            index: 1.0,
             first: None,
         };
         let Bench { scene, source, found, search, record, .. } = self;
