@@ -16,8 +16,9 @@
 @group(0) @binding(12) var<storage, read_write> far_looks: Looks;
 #endif
 
-// Largest error of the distance to what a pixel shows, as a share: half of what counts as another depth.
-const DEPTH_TOLERANCE: f32 = 0.025;
+// Largest error of the distance to what a pixel shows, as a share, by how fast that changes along an edge:
+// an eighth of what counts as another depth, as it changes faster across.
+const DEPTH_TOLERANCE: f32 = 0.00625;
 
 // What is looked at, and what is drawn there if it is not cut.
 struct Middle {

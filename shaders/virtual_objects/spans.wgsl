@@ -123,8 +123,21 @@ fn pixel_of(image: vec3<f32>) -> vec2<f32> {
     return (0.5 * clip.xy / max(clip.w, 1e-6) + 0.5) * vec2<f32>(split.size);
 }
 
-// Length of an edge in pixels; `ENDLESS` where the reflector sees it under a large angle.
+// Whether an edge is drawn beside the view, as far from it as that is wide or high, or further.
+fn is_beside_view(a: Corner, b: Corner) -> bool {
+    let one = view_camera.clip_from_world * vec4(a.image, 1.0);
+    let other = view_camera.clip_from_world * vec4(b.image, 1.0);
+    let beyond = (one.xy > vec2(3.0 * one.w)) & (other.xy > vec2(3.0 * other.w));
+    let before = (one.xy < vec2(-3.0 * one.w)) & (other.xy < vec2(-3.0 * other.w));
+    return any(beyond | before);
+}
+
+// Length of an edge in pixels; `ENDLESS` where the reflector sees it under a large angle, and 0 beside the
+// view, where pixels are no measure of what is seen.
 fn extent(a: Corner, b: Corner) -> f32 {
+    if is_beside_view(a, b) {
+        return 0.0;
+    }
     let seen_from = point_at(vec2<i32>(0.5 * (place_of(a) + place_of(b)))).xyz;
     let away = distance(0.5 * (a.position + b.position), seen_from);
     let is_small = distance(a.position, b.position) < SMALL * away;
