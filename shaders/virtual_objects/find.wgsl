@@ -9,6 +9,9 @@
     NOWHERE, camera, image_of, normal_at, point_at, quality, search, texel_of, unpacked_texel
 }
 #import virtual_objects::walk::{best_at_top, descent}
+#ifdef REFLECTOR_CUBE
+#import virtual_objects::cube_search::cube_point
+#endif
 
 // Cosine between normal and eye at a closed reflector's rim, at most.
 const RIM: f32 = 0.25;
@@ -28,6 +31,13 @@ fn is_hidden(v: vec3<f32>) -> bool {
     return p.w == 1.0 && dot(v - p.xyz, normal_at(texel)) < 0.0;
 }
 
+#ifdef REFLECTOR_CUBE
+fn point_from(place: vec2<f32>, is_known: bool, v: vec3<f32>) -> ReflectionPoint {
+    let out = cube_point(v);
+    steps += out.steps;
+    return out;
+}
+#else
 // The reflection point: from a place likely to be near it, if one is known; else, or where that fails,
 // from coarse to fine, as far as Newton's steps reach; else to the best texel and from there.
 // One loop, as drivers that inline all calls take long over many.
@@ -71,6 +81,7 @@ fn point_from(place: vec2<f32>, is_known: bool, v: vec3<f32>) -> ReflectionPoint
 #endif
     return ReflectionPoint(begin, p, n, 0u, found);
 }
+#endif
 
 // The eye sees the reflector's rim there.
 fn grazes(p: vec3<f32>, n: vec3<f32>) -> bool {

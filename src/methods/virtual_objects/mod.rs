@@ -12,7 +12,11 @@
 //! `@revised`: textures that show all of the reflector, searches from coarse to fine that end between
 //! texels and remember nothing, hidden parts cut off along the reflector's shadow volume, triangles halved
 //! where their middles are drawn in the wrong place, and a flag where the law of reflection is broken.
+//!
+//! Either may search cube maps instead, as the older methods do (`reflector_map=cube`); what the eye sees of
+//! the reflector is then drawn only for `hidden=clip`, which cuts along it.
 
+mod cube;
 mod params;
 mod pyramid;
 mod rule;
@@ -33,6 +37,7 @@ use crate::stages::{
 };
 
 use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
+use cube::CubeMaps;
 use rule::Rule;
 use search::{Found, Mirror, Search};
 use source::{Lists, Source};
@@ -49,9 +54,10 @@ pub const INFO: MethodInfo = MethodInfo {
     variants: &["published", "revised"],
     params: params::PARAMS,
     limits: "one reflection a vertex and reflector, so convex reflectors; one bounce; @published: straight \
-             between vertices",
+             between vertices; reflector_map=cube: reflectors star-shaped about their centroid",
     passes: &[
         "virtual-objects/subdivide",
+        "virtual-objects/cube",
         "virtual-objects/vertices",
         "footprint/clear-list",
         "footprint/list",
@@ -84,6 +90,8 @@ struct VirtualObjects {
     size: [u32; 2],
     environment: MirroredEnvironment,
     gbuffer: GBuffer,
+    /// Where these are searched.
+    cubes: Option<CubeMaps>,
     search: Search,
     reflected: GraphicsPipeline,
     /// What is reflected and where it was found; made by the first `prepare`.
@@ -101,9 +109,11 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     let &Setup { device, mode, size, .. } = setup;
     let rule = Rule::new(setup.values);
     let texels = rule.texture_size(size);
+    let cubes = rule.cube.map(|cube| CubeMaps::new(device, cube, rule.format));
     Ok(Box::new(VirtualObjects {
         environment: MirroredEnvironment::new(device, mode)?,
         gbuffer: GBuffer::new(device, texels, rule.format)?,
+        cubes: cubes.transpose()?,
         search: Search::new(device, &rule, mode, texels)?,
         reflected: reflected_pipeline(setup, &rule)?,
         state: None,
@@ -135,10 +145,16 @@ impl ReflectionMethod for VirtualObjects {
             let (rule, clips) = (&self.rule, self.rule.clips);
             let split = clips.then(|| Split::new(&device, rule, self.mode, &source, self.size));
             let made = if clips { split::corners_made(self.size) } else { 0 };
-            // Who starts from the pyramid needs no texels of the frame before.
-            let kept = if rule.starts_at_pyramid { 0 } else { want.reflectors.len() };
+            // Who starts from the pyramid, or from directions, needs no texels of the frame before.
+            let keeps = !rule.starts_at_pyramid && rule.cube.is_none();
+            let kept = if keeps { want.reflectors.len() } else { 0 };
             let found = Found::new(&device, source.count, kept, made)?;
             self.state = Some(State { source, found, split: split.transpose()? });
+            for &object in want.reflectors {
+                if let Some(cubes) = &mut self.cubes {
+                    cubes.draw(frame, scene, object)?;
+                }
+            }
         }
         Ok(())
     }
@@ -156,12 +172,18 @@ impl ReflectionMethod for VirtualObjects {
         for (place, &object) in view.reflectors.iter().enumerate() {
             let camera = self.camera(scene, view, object);
             let gbuffer = &self.gbuffer;
-            gbuffer.draw(frame, scene, "virtual-objects", object, &camera)?;
+            if let Some(cubes) = &mut self.cubes {
+                cubes.draw(frame, scene, object)?;
+            }
+            if self.cubes.is_none() || self.rule.clips {
+                gbuffer.draw(frame, scene, "virtual-objects", object, &camera)?;
+            }
             let mirror = Mirror {
                 object,
                 place,
                 vertices: source.count,
                 gbuffer,
+                cube: self.cubes.as_ref().and_then(|cubes| cubes.of(scene, object)),
                 camera: &camera,
                 cut: view.cut,
             };
