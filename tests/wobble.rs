@@ -221,7 +221,10 @@ fn what_a_mirror_shows_of_the_wave_is_drawn_where_it_is() {
         mirrors.filter(|&i| shows(&truth, i) != shows(&tested, i)).count()
     };
     let (own, other) = (differing(6), differing(18));
-    assert!(own <= 3 && other > 2 * own + 3, "{own} at the moment drawn, {other} half a wave later");
+    assert!(
+        own <= 3 && other > 2 * own + 3,
+        "{own} at the moment drawn, {other} half a wave later"
+    );
 }
 
 #[test]

@@ -1,13 +1,13 @@
 enable primitive_index;
 // The virtual objects of one reflector, drawn through its stencil; each fragment carries the scene
-// point it shows (Estalella et al. 2006, section 3).
+// point it shows (Estalella et al. 2006, section 3). Those of explosion maps, too.
 #import bindings::record::{RecordTargets, record_targets}
 #import bindings::scene::objects
 #import bindings::surface::{Surface, surface_colour, surface_vertex}
 #import common::record::found_chain
-#import virtual_objects::corner::{Corner, HIDDEN, status_of}
+#import virtual_objects::corner::{Corner, HIDDEN, LOST, status_of}
 #import virtual_objects::residual::{
-    camera, displacement, reflector_id, reflector_position
+    camera, displacement, reflector_id, reflector_normal, reflector_position
 }
 
 struct Reflected {
@@ -43,7 +43,7 @@ struct VirtualSurface {
     @location(1) normal: vec3<f32>,
     @location(2) uv: vec2<f32>,
     @location(3) @interpolate(flat) object: u32,
-    // 1 where the vertex is hidden.
+    // 1 where the vertex is hidden; far below 0 where it is lost.
     @location(4) hidden: f32,
 }
 
@@ -82,7 +82,8 @@ fn vertex(
 ) -> VirtualSurface {
     let source = surface_vertex(index, object);
     let clip = camera.clip_from_world * vec4(corners[index].image, 1.0);
-    let hidden = select(0.0, 1.0, status_of(corners[index]) == HIDDEN);
+    let status = status_of(corners[index]);
+    let hidden = select(select(0.0, 1.0, status == HIDDEN), -1e6, status == LOST);
     return VirtualSurface(clip, source.position, source.normal, source.uv, object, hidden);
 }
 #endif
@@ -112,7 +113,22 @@ fn fragment(
         discard;
     }
 #endif
+    // What has a lost corner has no shape.
+    if in.hidden < 0.0 {
+        discard;
+    }
+#ifdef HIDDEN_DROPPED
+    if in.hidden > 0.0 {
+        discard;
+    }
+#endif
     let bounce = textureLoad(reflector_position, pixel, 0).xyz;
+#ifdef HIDDEN_CUT
+    // A mirror shows nothing that lies behind it.
+    if dot(in.position - bounce, textureLoad(reflector_normal, pixel, 0).xyz) < 0.0 {
+        discard;
+    }
+#endif
     let source = Surface(in.clip, in.position, in.normal, in.uv, in.object);
     let colour = surface_colour(source, in.position - bounce);
     let rank = objects[reflected.reflector].rank;

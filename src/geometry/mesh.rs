@@ -47,6 +47,21 @@ impl Mesh {
         !self.triangles.is_empty() && surplus.values().all(|&turns| turns == 0)
     }
 
+    /// Of each triangle those on the other side of its edges, each opposite to a corner; `None` at a border.
+    /// Vertices of equal position are taken as one.
+    pub fn neighbours(&self) -> Vec<[Option<u32>; 3]> {
+        let edges = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|vertex| self.place(vertex));
+            [(b, c), (c, a), (a, b)]
+        };
+        let mut owner = HashMap::new();
+        for (index, triangle) in self.triangles.iter().enumerate() {
+            owner.extend(edges(triangle).map(|edge| (edge, index as u32)));
+        }
+        let beyond = |(from, to)| owner.get(&(to, from)).copied();
+        self.triangles.iter().map(|triangle| edges(triangle).map(beyond)).collect()
+    }
+
     /// The bits of a vertex's position: equal where two vertices are at one place.
     pub(super) fn place(&self, vertex: u32) -> [u32; 3] {
         // Adding zero makes one zero of both.
@@ -150,5 +165,22 @@ mod tests {
         let mut turned = sphere(1.0, 12, 6);
         turned.triangles[3].swap(0, 1);
         assert!(!turned.is_closed(), "a triangle that faces the other way");
+    }
+    #[test]
+    fn neighbours_share_an_edge_and_borders_have_none() {
+        let mesh = sphere(1.0, 12, 6);
+        let neighbours = mesh.neighbours();
+        for (index, around) in neighbours.iter().enumerate() {
+            for (corner, beyond) in around.iter().enumerate() {
+                let beyond = beyond.unwrap() as usize;
+                assert!(neighbours[beyond].contains(&Some(index as u32)));
+                let [opposite, others] = [index, beyond].map(|triangle| mesh.corners(triangle));
+                let shared = opposite.iter().filter(|p| others.contains(p)).count();
+                assert!(shared == 2 && !others.contains(&opposite[corner]));
+            }
+        }
+        let [one, other] = plane(Vec2::ONE).neighbours().try_into().unwrap();
+        assert_eq!(one.into_iter().flatten().collect::<Vec<_>>(), [1]);
+        assert_eq!(other.into_iter().flatten().collect::<Vec<_>>(), [0]);
     }
 }

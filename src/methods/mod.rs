@@ -6,12 +6,15 @@
 pub mod case;
 mod distance_impostor;
 mod environment_map;
+mod explosion_map;
 pub mod nearest;
 mod none;
 pub mod params;
 mod planar_mirror;
 mod ray_traced;
+mod reflected;
 mod screen_space;
+mod source;
 mod truth;
 mod virtual_objects;
 mod z_buffered_map;
@@ -154,4 +157,5 @@ pub static METHODS: &[MethodInfo] = &[
     distance_impostor::INFO,
     screen_space::INFO,
     virtual_objects::INFO,
+    explosion_map::INFO,
 ];

@@ -240,6 +240,12 @@ impl GpuScene {
         self.ranges[self.scene.objects[object as usize].mesh]
     }
 
+    /// First index and index count of an object, or of the closed partner it has.
+    pub fn closed_range(&self, object: ObjectId) -> (u32, u32) {
+        let closed = self.scene.objects[object as usize].closed;
+        closed.map_or(self.range(object), |mesh| self.ranges[mesh])
+    }
+
     /// The triangles of each mesh, in object space.
     pub fn meshes(&self) -> Vec<MeshTriangles<'_>> {
         let mesh = |&(first_index, index_count): &(u32, u32)| MeshTriangles {
@@ -273,8 +279,7 @@ impl GpuScene {
 
     /// Draw an object, or the closed partner it has.
     pub fn draw_closed(&self, draw: &mut Draw, object: ObjectId) {
-        let closed = self.scene.objects[object as usize].closed;
-        let (first, count) = closed.map_or(self.range(object), |mesh| self.ranges[mesh]);
+        let (first, count) = self.closed_range(object);
         draw.indexed(&self.indices, first, count, object);
     }
 }

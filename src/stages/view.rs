@@ -35,6 +35,16 @@ impl CameraUniform {
         Vec3::from_array(self.eye)
     }
 
+    /// Unit direction from a world point to the eye.
+    pub fn towards_eye(&self, point: Vec3) -> Vec3 {
+        let back = -Vec3::from_array(self.forward);
+        if self.orthographic == 1 {
+            back
+        } else {
+            (self.eye() - point).try_normalize().unwrap_or(back)
+        }
+    }
+
     /// The camera for an image of `size` pixels.
     pub fn new(camera: &Camera, size: [u32; 2]) -> CameraUniform {
         let [right, up, back] = camera.axes();

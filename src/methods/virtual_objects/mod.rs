@@ -17,25 +17,23 @@ mod params;
 mod pyramid;
 mod rule;
 mod search;
-mod source;
 mod split;
 #[cfg(test)]
 mod tests;
 
-use bytemuck::{Pod, Zeroable};
-
 use crate::error::Result;
-use crate::gpu::{Attachments, Depth, Frame, GraphicsPipeline, Load, Stencil};
+use crate::gpu::Frame;
 use crate::scene::ObjectId;
 use crate::stages::{
     CameraUniform, Footprint, GBuffer, GpuScene, MirroredEnvironment, RecordMode, ReflectionRecord,
     View,
 };
 
+use super::reflected::Reflected;
+use super::source::{self, Lists, Source};
 use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
 use rule::Rule;
 use search::{Found, Mirror, Search};
-use source::{Lists, Source};
 use split::Split;
 
 pub const INFO: MethodInfo = MethodInfo {
@@ -68,16 +66,6 @@ pub const INFO: MethodInfo = MethodInfo {
     new: Some(new),
 };
 
-/// WGSL `Reflected` of `shaders/virtual_objects/reflected.wgsl`.
-#[derive(Clone, Copy, Pod, Zeroable)]
-#[repr(C)]
-struct ReflectedUniform {
-    reflector: ObjectId,
-    vertices: u32,
-    residual: f32,
-    pad: u32,
-}
-
 struct VirtualObjects {
     rule: Rule,
     mode: RecordMode,
@@ -85,7 +73,7 @@ struct VirtualObjects {
     environment: MirroredEnvironment,
     gbuffer: GBuffer,
     search: Search,
-    reflected: GraphicsPipeline,
+    reflected: Reflected,
     /// What is reflected and where it was found; made by the first `prepare`.
     state: Option<State>,
 }
@@ -105,23 +93,12 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         environment: MirroredEnvironment::new(device, mode)?,
         gbuffer: GBuffer::new(device, texels, rule.format)?,
         search: Search::new(device, &rule, mode, texels)?,
-        reflected: reflected_pipeline(setup, &rule)?,
+        reflected: Reflected::new(setup, &rule.defines(mode), rule.residual_px)?,
         state: None,
         rule,
         mode,
         size,
     }))
-}
-
-fn reflected_pipeline(setup: &Setup, rule: &Rule) -> Result<GraphicsPipeline> {
-    let attachments = Attachments {
-        colours: setup.mode.formats(),
-        depth_stencil: true,
-        depth: Depth::Nearest,
-        stencil: Stencil::Within,
-    };
-    let file = "virtual_objects/reflected.wgsl";
-    GraphicsPipeline::new(setup.device, file, &rule.defines(setup.mode), &attachments)
 }
 
 impl ReflectionMethod for VirtualObjects {
@@ -151,7 +128,7 @@ impl ReflectionMethod for VirtualObjects {
         record: &mut ReflectionRecord,
     ) -> Result<()> {
         let Some(State { source, found, split }) = &self.state else { return Ok(()) };
-        source.pose(frame, scene)?;
+        source.pose(frame, scene, "virtual-objects")?;
         self.environment.fill(frame, scene, "virtual-objects", view, record)?;
         for (place, &object) in view.reflectors.iter().enumerate() {
             let camera = self.camera(scene, view, object);
@@ -196,35 +173,22 @@ impl VirtualObjects {
         reflector: ObjectId,
     ) -> Result<()> {
         let Some(State { source, found, split }) = &self.state else { return Ok(()) };
-        let reflected = ReflectedUniform {
-            reflector,
-            vertices: source.count,
-            residual: self.rule.residual_px,
-            pad: 0,
-        };
-        let pass = frame.pass("virtual-objects/reflected").graphics(&self.reflected);
-        let mut pass = record
-            .attach(view.bind(scene.bind(pass)))
-            .uniform("reflected", &reflected)
-            .buffer("vertices", &source.vertices)
-            .buffer("corners", &found.corners)
-            .buffer("source_triangles", &source.triangles)
-            .buffer("first_triangles", &source.first_triangles)
-            .optional();
-        if let Some(split) = split {
-            pass = pass
+        let corners = &found.corners;
+        let to = (view, record, reflector);
+        let pass = self.reflected.pass(frame, scene, "virtual-objects", to, source, corners);
+        let pass = match split {
+            None => pass,
+            Some(split) => pass
                 .buffer("owners", &source.owners)
                 .buffer("source_indices", &source.indices)
-                .buffer("drawn", &split.drawn);
-        }
-        pass.depth_stencil(&view.footprint.depth_stencil, Load::Clear([0.0; 4]), Load::Keep).draw(
-            |draw| {
-                draw.stencil_reference(Footprint::stencil_of(reflector));
-                match split {
-                    Some(split) => split.draw(draw),
-                    None => source.draw(draw, reflector),
-                }
-            },
-        )
+                .buffer("drawn", &split.drawn),
+        };
+        pass.draw(|draw| {
+            draw.stencil_reference(Footprint::stencil_of(reflector));
+            match split {
+                Some(split) => split.draw(draw),
+                None => source.draw(draw, reflector),
+            }
+        })
     }
 }

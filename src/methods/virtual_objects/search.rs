@@ -10,6 +10,7 @@ use super::rule::Rule;
 use super::source::Source;
 use crate::error::Result;
 use crate::gpu::{Buffer, ComputePipeline, Device, Frame, Pass};
+use crate::methods::reflected::Corner;
 use crate::scene::ObjectId;
 use crate::stages::{CameraUniform, GBuffer, GpuScene, RecordMode, ReflectionRecord};
 
@@ -28,17 +29,6 @@ pub struct SearchUniform {
     pad_a: u32,
     pad_b: u32,
     pad_c: u32,
-}
-
-/// WGSL `Corner` of `shaders/virtual_objects/corner.wgsl`.
-#[derive(Clone, Copy, Pod, Zeroable)]
-#[repr(C)]
-pub struct Corner {
-    pub position: [f32; 3],
-    pub weights: u32,
-    pub image: [f32; 3],
-    /// Texel found, in halves: x | y << 14 | status << 28.
-    pub found: u32,
 }
 
 /// WGSL `Middle` of `shaders/virtual_objects/start.wgsl`.
@@ -208,7 +198,6 @@ mod tests {
     #[test]
     #[rustfmt::skip]
     fn uniforms_are_laid_out_as_their_wgsl_twins() {
-        assert_layout!("virtual_objects/search.wgsl", "Corner", Corner, position, weights, image, found);
         assert_layout!("virtual_objects/search.wgsl", "Search", SearchUniform,
             total, history, cut, cap, size, threshold, reflector, top, pad_a, pad_b, pad_c);
         assert_layout!("virtual_objects/start.wgsl", "Middle", MiddleUniform, texel, pad);

@@ -8,23 +8,15 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3, Vec2, Vec3, Vec4};
 
 use super::rule::Rule;
-use super::search::{Corner, Found, Mirror, Search};
+use super::search::{Found, Mirror, Search};
 use super::source::{Lists, Source};
 use crate::geometry::alhazen::reflected_point;
 use crate::geometry::shapes::sphere;
-use crate::gpu::layout::assert_layout;
 use crate::gpu::{Device, Format, Frame};
+use crate::methods::reflected::Corner;
 use crate::methods::{Case, METHODS, Values};
 use crate::scene::{self, Moment, ObjectId, Scene};
 use crate::stages::{CameraUniform, GBuffer, GpuScene, RecordMode, ReflectionRecord};
-
-#[test]
-fn the_uniform_of_the_draw_is_laid_out_as_its_wgsl_twin() {
-    use super::ReflectedUniform;
-    #[rustfmt::skip]
-    assert_layout!("virtual_objects/reflected.wgsl", "Reflected", ReflectedUniform,
-        reflector, vertices, residual, pad);
-}
 
 /// The scene `columns` with a sphere so fine that its facets cannot be told from it.
 fn columns() -> (Scene, ObjectId) {

@@ -1,4 +1,4 @@
-//! What is reflected: every object's vertices in one list, cut as finely as asked.
+//! What forward methods reflect: every object's vertices in one list, cut as finely as asked.
 
 use std::sync::Arc;
 
@@ -103,12 +103,12 @@ impl Lists {
 }
 
 impl Source {
-    /// Move the vertices of what wobbles to where the scene's are now.
-    pub fn pose(&self, frame: &mut Frame, scene: &GpuScene) -> Result<()> {
+    /// Move the vertices of what wobbles to where the scene's are now. `name` begins the pass's name.
+    pub fn pose(&self, frame: &mut Frame, scene: &GpuScene, name: &str) -> Result<()> {
         for (object, &first) in self.first_vertices.iter().enumerate() {
             if let Some(vertices) = scene.deformed(object as ObjectId) {
                 let offset = u64::from(first) * size_of::<Vertex>() as u64;
-                frame.pass("virtual-objects/vertices").copy(&self.vertices, offset, vertices)?;
+                frame.pass(&format!("{name}/vertices")).copy(&self.vertices, offset, vertices)?;
             }
         }
         Ok(())
