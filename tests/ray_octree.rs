@@ -13,20 +13,20 @@ use mirrorbench::methods::reflection_morphing::ray_map::RayMapper;
 use mirrorbench::scene;
 use mirrorbench::truth::Cache;
 
-const RECIPE: Recipe = Recipe { map: 48, depth: 4, layers: 1 };
+const RECIPE: Recipe = Recipe { map: 48, depth: 4, layers: 1, still: false };
 const LOCATION: Vec3 = Vec3::new(0.0, 1.5, 4.0);
 
 /// The octree of a scene's map.
 fn octree(name: &str, recipe: Recipe) -> RayOctree {
     let scene = scene::load(name).unwrap();
-    let mapper = RayMapper::new(&scene, &scene.at(0));
+    let mapper = RayMapper::new(&scene, &scene.at(0), false);
     RayOctree::new(mapper.extent, mapper.trace(LOCATION, recipe.map, recipe.layers), recipe.depth)
 }
 
 #[test]
 fn rays_leave_a_sphere_by_the_law_of_reflection_and_end_on_the_scenes_box() {
     let scene = scene::load("columns").unwrap();
-    let mapper = RayMapper::new(&scene, &scene.at(0));
+    let mapper = RayMapper::new(&scene, &scene.at(0), false);
     let (segments, size) = (mapper.trace(LOCATION, 48, 1), 48);
     assert!(segments.len() > 100, "{} rays", segments.len());
     assert!(segments.is_sorted_by_key(|segment| segment.texel));
@@ -50,7 +50,7 @@ fn rays_leave_a_sphere_by_the_law_of_reflection_and_end_on_the_scenes_box() {
 #[test]
 fn a_second_layer_begins_where_the_first_ends_and_remembers_both_mirrors() {
     let scene = scene::load("two-spheres").unwrap();
-    let mapper = RayMapper::new(&scene, &scene.at(0));
+    let mapper = RayMapper::new(&scene, &scene.at(0), false);
     let (segments, texels) = (mapper.trace(LOCATION, 64, 2), 6 * 64 * 64);
     let second = segments.iter().filter(|segment| segment.texel >= texels);
     let mut traces = Vec::new();
@@ -66,9 +66,33 @@ fn a_second_layer_begins_where_the_first_ends_and_remembers_both_mirrors() {
 }
 
 #[test]
+fn still_objects_left_in_end_rays_and_hide_the_mirror() {
+    let scene = scene::load("columns").unwrap();
+    let moment = scene.at(0);
+    let [out, left_in] =
+        [false, true].map(|still| RayMapper::new(&scene, &moment, still).trace(LOCATION, 128, 1));
+    assert!(left_in.len() < out.len(), "{} of {} rays", left_in.len(), out.len());
+    let length = |ray: &RaySegment| ray.start.distance(ray.end);
+    let (mut cut, cube) = (0, moment.poses[scene.objects.len() - 1]);
+    for ray in &left_in {
+        let whole = out.iter().find(|whole| whole.texel == ray.texel).unwrap();
+        assert_eq!(whole.start, ray.start);
+        assert!(length(ray) < length(whole) + 1e-4);
+        cut += usize::from(length(ray) < length(whole) - 0.1);
+    }
+    // The floor and the columns; the cube moves, so rays go through it.
+    assert!(cut > 100, "{cut} rays end early");
+    let towards_cube =
+        left_in.iter().filter(|ray| ray.distance_squared(cube.translation.into()) < 0.01);
+    assert!(towards_cube.clone().count() > 0);
+    let beyond = |ray: &RaySegment| ray.end.distance(cube.translation.into()) > 0.3;
+    assert!(towards_cube.clone().all(beyond));
+}
+
+#[test]
 fn from_inside_a_closed_mirror_nothing_is_seen() {
     let scene = scene::load("columns").unwrap();
-    let mapper = RayMapper::new(&scene, &scene.at(0));
+    let mapper = RayMapper::new(&scene, &scene.at(0), false);
     assert_eq!(mapper.trace(Vec3::Y, 16, 1), []);
 }
 
@@ -160,7 +184,7 @@ fn a_leaf_knows_the_nearest_ray_unless_it_runs_through_another() {
     // The ray nearest to a point need not cross the point's own leaf: rays are farther from each other, or the
     // leaf smaller, the more of them are missed. So it is in the paper; what a leaf finds is never nearer.
     for (map, [low, high]) in [(32, [0.3, 0.6]), (64, [0.4, 0.6]), (128, [0.5, 0.7])] {
-        let octree = octree("columns", Recipe { map, depth: 5, layers: 1 });
+        let octree = octree("columns", Recipe { map, depth: 5, ..RECIPE });
         let mut random = SplitMix64::new(7);
         let (mut asked, mut same, mut none) = (0, 0, 0);
         while asked < 10_000 {
@@ -248,6 +272,7 @@ fn whatever_changes_the_octree_changes_its_file() {
         Recipe { map: 49, ..RECIPE }.key(&columns, &moment, LOCATION),
         Recipe { depth: 5, ..RECIPE }.key(&columns, &moment, LOCATION),
         Recipe { layers: 2, ..RECIPE }.key(&columns, &moment, LOCATION),
+        Recipe { still: true, ..RECIPE }.key(&columns, &moment, LOCATION),
     ];
     for (index, key) in keys.iter().enumerate() {
         assert!(!keys[..index].contains(key), "key {index}");

@@ -50,6 +50,21 @@ fn at_a_node_the_picture_is_that_nodes_own() {
 }
 
 #[test]
+fn from_cell_to_cell_nothing_jumps_that_both_know() {
+    // The face's four nodes are both cells'. What one of the others does not see comes and goes.
+    let session = Session::open();
+    let case = "reflection-morphing:map=96,files=none";
+    let [before, after, farther] = [0.4999, 0.5001, 0.54].map(|x| {
+        let scene = seen_from(Vec3::new(x, 1.7, 3.8));
+        frame(&session, &scene, case, SIZE, 0)
+    });
+    let (pixels, share) = agreement(&before, &after, 0.01);
+    assert!(pixels > 300 && share > 0.97, "{share} of {pixels} pixels");
+    let (_, share) = agreement(&before, &farther, 0.01);
+    assert!(share < 0.5, "{share} of the pixels, 4 cm on");
+}
+
+#[test]
 fn all_rays_find_what_leaves_miss() {
     let (session, scene) = (Session::open(), seen_from(Vec3::new(0.1, 1.6, 3.9)));
     let case = "reflection-morphing:map=64,files=none";

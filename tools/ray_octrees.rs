@@ -24,7 +24,7 @@ const REPEATS: usize = 5;
 
 fn main() {
     let scene = load("columns").expect("a shipped scene");
-    let mapper = RayMapper::new(&scene, &scene.at(0));
+    let mapper = RayMapper::new(&scene, &scene.at(0), false);
     let build = |distance: f32| {
         let location = Vec3::new(0.0, 1.0, 1.0 + distance);
         RayOctree::new(mapper.extent, mapper.trace(location, MAP, 1), DEPTH)

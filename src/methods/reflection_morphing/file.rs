@@ -25,6 +25,8 @@ pub struct Recipe {
     pub depth: u32,
     /// Reflections along a ray.
     pub layers: u32,
+    /// Rays end at diffuse objects that never move.
+    pub still: bool,
 }
 
 impl Recipe {

@@ -91,7 +91,12 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
                 .to_owned(),
         ));
     }
-    let recipe = Recipe { map: values.u32("map"), depth: values.u32("depth"), layers: LAYERS };
+    let recipe = Recipe {
+        map: values.u32("map"),
+        depth: values.u32("depth"),
+        layers: LAYERS,
+        still: values.is("still", "in"),
+    };
     let grid = Grid { cell: values.f32("cell") };
     let scene = &setup.scene.scene;
     let moves = scene.reflectors().into_iter().any(|mirror| scene.is_moving(mirror));

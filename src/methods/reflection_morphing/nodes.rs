@@ -78,9 +78,9 @@ impl Nodes {
         mapper: &mut Option<RayMapper<'s>>,
     ) -> Result<RayOctree> {
         let location = self.grid.location(node);
-        let Recipe { map, depth, layers } = self.recipe;
+        let Recipe { map, depth, layers, still } = self.recipe;
         let mut build = || {
-            let mapper = mapper.get_or_insert_with(|| RayMapper::new(scene, moment));
+            let mapper = mapper.get_or_insert_with(|| RayMapper::new(scene, moment, still));
             RayOctree::new(mapper.extent, mapper.trace(location, map, layers), depth)
         };
         let Some(files) = &self.files else { return Ok(build()) };

@@ -18,6 +18,13 @@ pub const PARAMS: &[Param] = &[
         doc: "how often a cell of an octree may be split (4.2; section 8 has 5)",
     },
     Param {
+        name: "still",
+        kind: Kind::Choice(&["out", "in"]),
+        defaults: &["out"],
+        needs: None,
+        doc: "diffuse objects that never move: left out of what rays meet, or in, so that they end rays (4.1)",
+    },
+    Param {
         name: "cell",
         kind: Kind::Real { min: 0.01, max: 100.0 },
         defaults: &["0.5"],

@@ -23,13 +23,15 @@ pub struct RayMapper<'s> {
 }
 
 impl<'s> RayMapper<'s> {
-    pub fn new(scene: &'s Scene, moment: &Moment) -> Self {
+    /// `still`: "if some diffuse objects are known to never move, they could be left in which reduces the
+    /// number of rays"; what they hide from a location, its rays do not find.
+    pub fn new(scene: &'s Scene, moment: &Moment, still: bool) -> Self {
         let mut reflectors = vec![None; scene.objects.len()];
         for (object, rank) in scene.reflectors().into_iter().zip(0..) {
             reflectors[object as usize] = Some((rank, scene.mesh_of(object).is_closed()));
         }
-        let is_reflector = |object| scene.is_reflector(object);
-        let tracer = Tracer::among(scene, moment, TruthOptions::default(), is_reflector);
+        let is_met = |object| scene.is_reflector(object) || still && !scene.is_moving(object);
+        let tracer = Tracer::among(scene, moment, TruthOptions::default(), is_met);
         RayMapper { tracer, reflectors, extent: extent(scene) }
     }
 
