@@ -61,7 +61,7 @@ fn from_cell_to_cell_nothing_jumps_that_both_know() {
     let (pixels, share) = agreement(&before, &after, 0.01);
     assert!(pixels > 300 && share > 0.97, "{share} of {pixels} pixels");
     let (_, share) = agreement(&before, &farther, 0.01);
-    assert!(share < 0.5, "{share} of the pixels, 4 cm on");
+    assert!(share < 0.8, "{share} of the pixels, 4 cm on");
 }
 
 #[test]
