@@ -15,7 +15,7 @@ use snapshot_support::{EDGE_SHARE, Picture, difference};
 const SIZE: [u32; 2] = [96, 64];
 
 /// Name, scene, case, frame.
-const SNAPSHOTS: [(&str, &str, &str, u32); 14] = [
+const SNAPSHOTS: [(&str, &str, &str, u32); 15] = [
     ("columns-environment-map", "columns", "environment-map", 40),
     ("patow-room-environment-map", "patow-room", "environment-map", 0),
     ("patow-room-index-surface", "patow-room", "environment-map:index=surface", 0),
@@ -26,6 +26,7 @@ const SNAPSHOTS: [(&str, &str, &str, u32); 14] = [
     ("patow-room-z-buffered-map-one-layer", "patow-room", "z-buffered-map:layers=1", 0),
     ("lecture-planar-mirror", "lecture", "planar-mirror", 0),
     ("columns-distance-impostor", "columns", "distance-impostor@revised", 40),
+    ("columns-reflection-morphing", "columns", "reflection-morphing:files=none", 40),
     ("lecture-screen-space", "lecture", "screen-space", 0),
     ("columns-explosion-map", "columns", "explosion-map@revised", 40),
     ("glass-sphere-ray-traced", "glass-sphere", "ray-traced", 0),

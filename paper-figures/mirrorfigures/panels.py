@@ -49,6 +49,37 @@ def comparison(figure: Figure, truth: Run, label: str, method: Run) -> None:
     figure.plot = plot
 
 
+def contest(figure: Figure, truth: Run, left: tuple[str, Run], right: tuple[str, Run]) -> None:
+    """Columns: a method, the truth, another method. Below each, the same two close-ups: the squares, a
+    fifth of the mirror wide, where the two methods together err most.
+    """
+    labels, methods = zip(left, right, strict=True)
+    figure.cite(methods[0], truth, methods[1])
+    traced, drawn = truth.frame(), [method.frame() for method in methods]
+    errors = [images.colour_error(frame.colour, traced.colour) for frame in drawn]
+    pictures = [images.to_srgb(frame.colour) for frame in (drawn[0], traced, drawn[1])]
+    boxes = _close_ups(sum(errors), traced.mirror)
+    height, width = errors[0].shape
+    plot, axes = plt.subplots(
+        2,
+        3,
+        figsize=(3 * COLUMN_IN, COLUMN_IN * (height / width + 0.5) + 1.3),
+        gridspec_kw={"height_ratios": [height / width, 0.5]},
+        layout="constrained",
+    )
+    plot.get_layout_engine().set(rect=(0, 0.045, 1, 0.945), h_pad=0.02, w_pad=0.03)
+    titles = (labels[0], "ray-traced truth", labels[1])
+    for (above, below), title, picture in zip(axes.T, titles, pictures, strict=True):
+        _picture(above, picture, title, boxes)
+        _zooms(below, picture, boxes)
+    for axis, method in zip((axes[1, 0], axes[1, 2]), methods, strict=True):
+        numbers = accuracy_lines(method.row)
+        axis.text(0.5, -0.06, numbers, transform=axis.transAxes, ha="center", va="top")
+    for label, ours, error in zip(labels, (pictures[0], pictures[2]), errors, strict=True):
+        figure.compare(label, pictures[1], ours, images.heat(error, traced.mirror))
+    figure.plot = plot
+
+
 def single(figure: Figure, run: Run, label: str) -> None:
     """One picture, for a figure that has nothing to be compared with."""
     figure.cite(run)

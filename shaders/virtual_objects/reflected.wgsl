@@ -1,6 +1,6 @@
 enable primitive_index;
 // The virtual objects of one reflector, drawn through its stencil; each fragment carries the scene
-// point it shows (Estalella et al. 2006, section 3). Those of explosion maps, too.
+// point it shows (Estalella et al. 2006, section 3). Those of other forward methods, too.
 #import bindings::record::{RecordTargets, record_targets}
 #import bindings::scene::objects
 #import bindings::surface::{Surface, surface_colour, surface_vertex}

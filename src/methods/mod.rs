@@ -13,6 +13,7 @@ pub mod params;
 mod planar_mirror;
 mod ray_traced;
 mod reflected;
+pub mod reflection_morphing;
 mod screen_space;
 mod source;
 mod truth;
@@ -158,4 +159,5 @@ pub static METHODS: &[MethodInfo] = &[
     screen_space::INFO,
     virtual_objects::INFO,
     explosion_map::INFO,
+    reflection_morphing::INFO,
 ];

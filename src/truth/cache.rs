@@ -1,7 +1,7 @@
-//! Truths kept on disk, so that a view is traced once.
+//! Truths kept on disk, so that a view is traced once; also the folder of all that is kept.
 
 use std::path::{Path, PathBuf};
-use std::{env, fs, io};
+use std::{env, fs};
 
 use glam::{Vec3, Vec4};
 
@@ -32,7 +32,7 @@ impl Cache {
             .map(Cache::new)
             .ok_or_else(|| {
                 let hint = "set MIRRORBENCH_CACHE to a folder, or HOME";
-                Error::Output(format!("there is no place to keep traced frames: {hint}"))
+                Error::Output(format!("there is no place to keep what was traced: {hint}"))
             })
     }
 
@@ -50,7 +50,7 @@ impl Cache {
             return Ok(frame);
         }
         let frame = tracer.frame(size);
-        self.keep(&path, &encode(&frame)).map_err(|cause| Error::output(&path, cause))?;
+        self.keep(&path, &encode(&frame))?;
         Ok(frame)
     }
 
@@ -63,13 +63,23 @@ impl Cache {
         self.folder.join(format!("{}-{}.truth", scene.name, &key[..32]))
     }
 
-    /// Write beside the target and rename: a reader sees the whole file or none.
-    fn keep(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
-        fs::create_dir_all(&self.folder)?;
+    /// Where files are kept.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Write a file of the folder: beside the target, then renamed, so that a reader sees the whole file or
+    /// none.
+    ///
+    /// # Errors
+    /// [`Error::Output`], with the path.
+    pub fn keep(&self, path: &Path, bytes: &[u8]) -> Result<()> {
         let partial = path.with_extension(format!("{}.partial", std::process::id()));
-        fs::write(&partial, bytes)
+        fs::create_dir_all(&self.folder)
+            .and_then(|()| fs::write(&partial, bytes))
             .and_then(|()| fs::rename(&partial, path))
             .inspect_err(|_| drop(fs::remove_file(&partial)))
+            .map_err(|cause| Error::output(path, cause))
     }
 }
 

@@ -58,11 +58,21 @@ pub struct Tracer<'s> {
 impl<'s> Tracer<'s> {
     /// Build the trees for `moment`, a frame of `scene`.
     pub fn new(scene: &'s Scene, moment: &Moment, options: TruthOptions) -> Self {
+        Tracer::among(scene, moment, options, |_| true)
+    }
+
+    /// The same where rays meet only the objects asked for.
+    pub fn among(
+        scene: &'s Scene,
+        moment: &Moment,
+        options: TruthOptions,
+        met: impl Fn(ObjectId) -> bool,
+    ) -> Self {
         let mut ranks = vec![0; scene.objects.len()];
         for (rank, reflector) in scene.reflectors().into_iter().enumerate() {
             ranks[reflector as usize] = rank as u32;
         }
-        let surfaces = Surfaces::new(scene, moment, options.shapes);
+        let surfaces = Surfaces::new(scene, moment, options.shapes, met);
         Tracer { scene, moment: moment.clone(), options, surfaces, ranks }
     }
 
@@ -90,6 +100,11 @@ impl<'s> Tracer<'s> {
         // The planes are flat, distances along the ray are not.
         let stretch = -1.0 / eye_ray.direction.dot(back);
         self.surfaces.nearest(eye_ray, [camera.near * stretch, camera.far * stretch], None)
+    }
+
+    /// The surface met by a ray from anywhere but a surface.
+    pub fn first(&self, ray: &Ray) -> Option<Hit> {
+        self.surfaces.nearest(ray, [0.0, f32::INFINITY], None)
     }
 
     /// The surface met by the ray that leaves a bounce, by the rule of [`Hit`] for a ray and the

@@ -49,7 +49,13 @@ pub(super) struct Surfaces<'s> {
 }
 
 impl<'s> Surfaces<'s> {
-    pub fn new(scene: &'s Scene, moment: &Moment, option: Shapes) -> Self {
+    /// Of the objects to be met.
+    pub fn new(
+        scene: &'s Scene,
+        moment: &Moment,
+        option: Shapes,
+        met: impl Fn(ObjectId) -> bool,
+    ) -> Self {
         let mut triangles = Vec::new();
         let mut owners = Vec::new();
         let mut ranges = Vec::new();
@@ -57,6 +63,10 @@ impl<'s> Surfaces<'s> {
         for (id, object) in scene.objects.iter().enumerate() {
             let (id, pose) = (id as ObjectId, moment.poses[id]);
             let first = owners.len() as u32;
+            if !met(id) {
+                ranges.push(first..first);
+                continue;
+            }
             if let (Some(surface), Shapes::Analytic) = (object.surface, option) {
                 shapes.push(Shape::new(id, &pose, surface));
                 ranges.push(first..first);

@@ -1,0 +1,175 @@
+//! Reflection morphing: scene vertices projected through rays traced beforehand from the corners of a cell
+//! round the eye, the eight projections interpolated, and the scene so reflected drawn through the stencil
+//! (Martin & Popescu 2004, "Reflection Morphing").
+//!
+//! `@published`, with section 8's sizes. "Reflectors only affect the direction of a ray, not its color, and
+//! should thus be considered as being part of the camera": rays know nothing of diffuse objects, which may
+//! move; they are made anew where a reflector moves.
+//!
+//! Choices the paper leaves to us: where nodes lie (`cell`, from the world's origin on), how finely meshes are
+//! cut (`subdivide`), that rays seen inside a closed mirror are left out, and that both sides of reflected
+//! triangles are drawn. Look-ups of vertices that stand still are kept for as long as their node is one of
+//! the eight ("these vertices must only be morphed once for each sampling cell", section 8): a node that two
+//! cells share is not asked again.
+
+pub mod file;
+pub mod grid;
+mod morph;
+mod nodes;
+mod params;
+pub mod ray_map;
+
+use crate::error::{Error, Result};
+use crate::geometry::Projection;
+use crate::gpu::Frame;
+use crate::scene::ObjectId;
+use crate::stages::{GpuScene, MirroredEnvironment, ReflectionRecord, View};
+use crate::truth::Cache;
+
+use super::reflected::Reflected;
+use super::source::{Lists, Source};
+use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
+use file::Recipe;
+use grid::{Grid, SamplingCell};
+use morph::{Morph, Vertices};
+use nodes::Nodes;
+
+pub const INFO: MethodInfo = MethodInfo {
+    id: "reflection-morphing",
+    title: "Reflection morphing: vertices projected through precomputed rays",
+    paper: "Martin & Popescu 2004",
+    family: Family::FeedForward,
+    depends: Changes { objects: false, reflectors: true, shading: false },
+    flags: false,
+    refracts: false,
+    variants: &["published"],
+    params: params::PARAMS,
+    limits: "one reflection a vertex and reflector; one bounce; reflectors that move cost eight octrees a frame; \
+             vertices no ray passes by take their triangles with them",
+    passes: &[
+        "reflection-morphing/subdivide",
+        "reflection-morphing/octree",
+        "reflection-morphing/vertices",
+        "footprint/clear-list",
+        "footprint/list",
+        "reflection-morphing/background",
+        "reflection-morphing/look-up-still",
+        "reflection-morphing/look-up-moving",
+        "reflection-morphing/morph",
+        "reflection-morphing/reflected",
+    ],
+    counters: &["look-ups", "rays", "valid"],
+    new: Some(new),
+};
+
+/// Reflections along a ray: "the results use one bounce" (section 8).
+const LAYERS: u32 = 1;
+
+struct ReflectionMorphing {
+    /// Longest edge of diffuse meshes, metres; 0 as modelled.
+    edge: f32,
+    grid: Grid,
+    nodes: Nodes,
+    environment: MirroredEnvironment,
+    morph: Morph,
+    reflected: Reflected,
+    /// What is reflected and where it was found; made by the first `prepare`.
+    state: Option<State>,
+}
+
+struct State {
+    source: Source,
+    vertices: Vertices,
+}
+
+fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
+    let &Setup { device, mode, values, .. } = setup;
+    if matches!(setup.scene.scene.camera.at(0.0).projection, Projection::Orthographic { .. }) {
+        return Err(Error::Usage(
+            "reflection-morphing traces rays from where an eye can be; parallel rays meet in no eye; \
+             valid: a scene whose camera has an angle of view"
+                .to_owned(),
+        ));
+    }
+    let recipe = Recipe {
+        map: values.u32("map"),
+        depth: values.u32("depth"),
+        layers: LAYERS,
+        still: values.is("still", "in"),
+    };
+    let grid = Grid { cell: values.f32("cell") };
+    let scene = &setup.scene.scene;
+    let moves = scene.reflectors().into_iter().any(|mirror| scene.is_moving(mirror));
+    let files = values.is("files", "kept") && !moves;
+    let mut defines = mode.defines();
+    defines.push(("TWO_SIDED", 1));
+    Ok(Box::new(ReflectionMorphing {
+        edge: values.f32("subdivide"),
+        grid,
+        nodes: Nodes::new(recipe, grid, files.then(Cache::of_user).transpose()?),
+        environment: MirroredEnvironment::new(device, mode)?,
+        morph: Morph::new(device, mode, values.is("lookup", "brute-force"))?,
+        reflected: Reflected::new(device, mode, &defines, 0.0)?,
+        state: None,
+    }))
+}
+
+impl ReflectionMethod for ReflectionMorphing {
+    fn prepare(&mut self, frame: &mut Frame, scene: &GpuScene, want: &Want) -> Result<()> {
+        if self.state.is_none() {
+            let device = frame.device().clone();
+            let edge = self.edge;
+            let lists =
+                frame.cpu("reflection-morphing/subdivide", || Lists::new(&scene.scene, edge))?;
+            let vertices = Vertices::new(&device, &scene.scene, &lists, want.reflectors.len())?;
+            self.state = Some(State { source: lists.upload(&device)?, vertices });
+        }
+        if want.changed.reflectors {
+            self.nodes.clear();
+        }
+        let cell = self.grid.cell_of(scene.moment().camera.eye);
+        self.fetch(frame, scene, &cell)
+    }
+
+    fn reflect(
+        &mut self,
+        frame: &mut Frame,
+        scene: &GpuScene,
+        view: &View,
+        record: &mut ReflectionRecord,
+    ) -> Result<()> {
+        let cell = self.grid.cell_of(view.camera.eye());
+        self.fetch(frame, scene, &cell)?;
+        let Some(State { source, vertices }) = &self.state else { return Ok(()) };
+        source.pose(frame, scene, "reflection-morphing")?;
+        self.environment.fill(frame, scene, "reflection-morphing", view, record)?;
+        let corners = cell.corners();
+        for (place, &object) in view.reflectors.iter().enumerate() {
+            let mirror = morph::Mirror { object, place, rank: rank_of(scene, object) };
+            self.morph.look_up(frame, scene, (source, vertices), &self.nodes, &mirror, record)?;
+            self.morph.run(frame, scene, (source, vertices), &corners, &mirror, (view, record))?;
+            let (name, to) = ("reflection-morphing", (view, &*record));
+            self.reflected.draw(frame, scene, name, to, object, (source, &vertices.corners))?;
+        }
+        self.nodes.slots.iter_mut().flatten().for_each(|node| node.is_asked = true);
+        Ok(())
+    }
+}
+
+impl ReflectionMorphing {
+    /// "Determine the sampling cell occupied by the desired view", and have its octrees at hand.
+    fn fetch(&mut self, frame: &mut Frame, scene: &GpuScene, cell: &SamplingCell) -> Result<()> {
+        let corners = cell.corners();
+        if (0..).zip(&corners).all(|(slot, corner)| !self.nodes.lacks(slot, corner)) {
+            return Ok(());
+        }
+        let device = frame.device().clone();
+        let at = (&*scene.scene, scene.moment());
+        frame.cpu("reflection-morphing/octree", || self.nodes.fetch(&device, at, &corners))
+    }
+}
+
+/// A reflector's rank among the scene's.
+fn rank_of(scene: &GpuScene, object: ObjectId) -> u32 {
+    scene.scene.reflectors().iter().take_while(|&&mirror| mirror != object).count() as u32
+}

@@ -1,0 +1,55 @@
+//! What can be chosen, and what had to be: the paper states neither cell size nor edge length.
+
+use crate::methods::{Kind, Param};
+
+pub const PARAMS: &[Param] = &[
+    Param {
+        name: "map",
+        kind: Kind::Integer { min: 8, max: 2048 },
+        defaults: &["256"],
+        needs: None,
+        doc: "texels along a side of a ray map's faces (4.1; section 8 has 256)",
+    },
+    Param {
+        name: "depth",
+        kind: Kind::Integer { min: 0, max: 10 },
+        defaults: &["5"],
+        needs: None,
+        doc: "how often a cell of an octree may be split (4.2; section 8 has 5)",
+    },
+    Param {
+        name: "still",
+        kind: Kind::Choice(&["out", "in"]),
+        defaults: &["out"],
+        needs: None,
+        doc: "diffuse objects that never move: left out of what rays meet, or in, so that they end rays (4.1)",
+    },
+    Param {
+        name: "cell",
+        kind: Kind::Real { min: 0.01, max: 100.0 },
+        defaults: &["0.5"],
+        needs: None,
+        doc: "metres between sampling locations (section 3; unstated)",
+    },
+    Param {
+        name: "subdivide",
+        kind: Kind::Real { min: 0.0, max: 1000.0 },
+        defaults: &["0.25"],
+        needs: None,
+        doc: "longest edge of diffuse meshes, metres (section 5; unstated); 0: as modelled",
+    },
+    Param {
+        name: "lookup",
+        kind: Kind::Choice(&["octree", "brute-force"]),
+        defaults: &["octree"],
+        needs: None,
+        doc: "the nearest ray: of those in the vertex's leaf, or of all (section 1.2)",
+    },
+    Param {
+        name: "files",
+        kind: Kind::Choice(&["kept", "none"]),
+        defaults: &["kept"],
+        needs: None,
+        doc: "octrees of reflectors that stand still are kept on disk (4.2), or built in every run",
+    },
+];

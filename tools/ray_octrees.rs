@@ -1,0 +1,93 @@
+//! What a ray octree takes and finds, as its location comes nearer to the mirror: `cargo bench --bench
+//! ray_octrees`. Beside section 8 of Martin & Popescu 2004, whose sizes these are: ray maps of 256 x 256
+//! texels a face, depth 5, one bounce, in `columns`.
+//!
+//! Then a million look-ups, by leaves and by all rays. A "second" is of all cores, the best of a few.
+
+use std::time::Instant;
+
+use glam::Vec3;
+use mirrorbench::geometry::random::SplitMix64;
+use mirrorbench::geometry::ray_octree::RayOctree;
+use mirrorbench::methods::reflection_morphing::ray_map::RayMapper;
+use mirrorbench::scene::load;
+use rayon::prelude::*;
+
+const MAP: u32 = 256;
+const DEPTH: u32 = 5;
+/// Metres from the sphere, whose radius is 1.
+const DISTANCES: [f32; 10] = [0.1, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 3.0, 6.0];
+/// What a ray in a leaf seems to take in the paper.
+const ENTRY_BYTES: usize = 12;
+const LOOK_UPS: usize = 1_000_000;
+const REPEATS: usize = 5;
+
+fn main() {
+    let scene = load("columns").expect("a shipped scene");
+    let mapper = RayMapper::new(&scene, &scene.at(0), false);
+    let build = |distance: f32| {
+        let location = Vec3::new(0.0, 1.0, 1.0 + distance);
+        RayOctree::new(mapper.extent, mapper.trace(location, MAP, 1), DEPTH)
+    };
+    // The paper does not say whether its mean is over all leaves, which a full tree has 8^5 of.
+    println!(
+        "metres    rays      MB  MB at 12 B  filled leaves  mean, all  mean, filled  largest  build ms"
+    );
+    for distance in DISTANCES {
+        let (octree, seconds) = best(|| build(distance));
+        let (load, rays) = (octree.load(), octree.segments.len());
+        println!(
+            "{distance:6.2}  {rays:6}  {:6.2}  {:10.2}  {:13}  {:9.1}  {:12.1}  {:7}  {:8.0}",
+            octree.bytes() as f64 / 1e6,
+            (ENTRY_BYTES * octree.lists.len()) as f64 / 1e6,
+            load.filled,
+            octree.lists.len() as f64 / 8f64.powi(DEPTH as i32),
+            load.mean,
+            load.most,
+            1e3 * seconds
+        );
+    }
+    look_ups(&build(3.0));
+}
+
+fn look_ups(octree: &RayOctree) {
+    let mut random = SplitMix64::new(1);
+    // What a mirror shows lies in front of it.
+    let [low, high] = [Vec3::new(-6.0, 0.0, 1.0), Vec3::new(6.0, 3.0, 6.0)];
+    let points: Vec<Vec3> = (0..LOOK_UPS).map(|_| random.within(low, high)).collect();
+    let ask = |nearest: &(dyn Fn(Vec3) -> Option<u32> + Sync)| -> Vec<Option<u32>> {
+        points.par_iter().map(|&point| nearest(point)).collect()
+    };
+    let (by_leaf, leaf_seconds) = best(|| ask(&|point| octree.nearest(point, 1)));
+    let start = Instant::now();
+    let by_all = ask(&|point| octree.nearest_of_all(point, 1));
+    let all_seconds = start.elapsed().as_secs_f64();
+    let share = |same: fn(&(&Option<u32>, &Option<u32>)) -> bool| {
+        let pairs = by_leaf.iter().zip(&by_all);
+        100.0 * pairs.filter(same).count() as f64 / LOOK_UPS as f64
+    };
+    let (same, none) = (share(|(leaf, all)| leaf == all), share(|(leaf, _)| leaf.is_none()));
+    println!(
+        "{LOOK_UPS} look-ups 3 m away: the nearest ray {same:.1} %, an empty leaf {none:.1} %; {:.2} million a \
+         second by leaves, {:.4} by all rays, {:.0} times as many",
+        1e-6 * LOOK_UPS as f64 / leaf_seconds,
+        1e-6 * LOOK_UPS as f64 / all_seconds,
+        all_seconds / leaf_seconds
+    );
+}
+
+/// What comes out, and the least time it took in seconds.
+fn best<T>(mut work: impl FnMut() -> T) -> (T, f64) {
+    let mut timed = || {
+        let start = Instant::now();
+        (work(), start.elapsed().as_secs_f64())
+    };
+    let mut least = timed();
+    for _ in 1..REPEATS {
+        let again = timed();
+        if again.1 < least.1 {
+            least = again;
+        }
+    }
+    least
+}
