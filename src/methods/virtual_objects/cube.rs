@@ -174,7 +174,7 @@ mod tests {
     #[test]
     #[rustfmt::skip]
     fn the_uniform_is_laid_out_as_its_wgsl_twin() {
-        assert_layout!("virtual_objects/cube_search.wgsl", "CubeSearch", CubeSearchUniform,
+        assert_layout!("virtual_objects/search.wgsl", "CubeSearch", CubeSearchUniform,
             row_x, row_y, row_z, centre, step, size, most_steps, pad_a, pad_b);
     }
 }
