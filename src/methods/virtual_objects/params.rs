@@ -30,7 +30,7 @@ pub const PARAMS: &[Param] = &[
         defaults: &["fixed-point", "newton"],
         needs: CUBE,
         doc: "steps along B - N, as we guess the search of 2005 to be; or Gauss-Newton steps on it, in the \
-              manner of Roger & Holzschuch 2006",
+              manner of Roger & Holzschuch 2006 (hidden=inverse searches back along B - N)",
     },
     Param {
         name: "step",
