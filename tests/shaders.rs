@@ -12,6 +12,10 @@ fn every_shader_compiles() {
     for file in &files {
         let parts = [("TREE_PARTS", 1), ("NODES_OF_PART", 100), ("SLOTS_OF_PART", 50)];
         let fragment = [("STAGE_FRAGMENT", 1), ("RECORD_FULL", 1)];
+        let revised = ["HIDDEN_CLIP", "PYRAMID", "START_PYRAMID", "POINT_NEWTON"];
+        let [second, refracted] = ["SECOND", "REFRACTED"].map(|define| {
+            [&revised[..], &[define]].concat().into_iter().map(|d| (d, 1)).collect::<Vec<_>>()
+        });
         for defines in [
             &[][..],
             &[("RECORD_FULL", 1)],
@@ -22,6 +26,8 @@ fn every_shader_compiles() {
             &parts,
             &fragment[..1],
             &fragment,
+            &second,
+            &refracted,
         ] {
             if let Err(error) = shaders.check(file, defines) {
                 wrong.push(error.to_string());

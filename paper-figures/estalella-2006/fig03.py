@@ -3,8 +3,8 @@ an open and closed reflector pair.
 
 To be seen: Left, the texels that show a mirror sphere, coloured by the angle between N and B for one
 vertex, the top of a column. The search begins in the middle; small crosses mark the neighbours it looks
-at, the white one the reflection point in closed form. Right, a bowl as it is drawn and its closed partner as
-it is searched, both in the colours of their normals.
+at, the white one the reflection point in closed form. Right, half a cylinder, turned so far that it shows its inside
+too, as it is drawn, and its closed partner as it is searched, both in the colours of their normals.
 
 Claim: "The crosshair pattern used to sample the textures for the reflection point search"; "an example of
 an open/closed reflector pair". Searches use the closed one, the stencil the open one (section 5.1).
@@ -29,14 +29,14 @@ from mirrorfigures.reflection_search import (
 SCENE, SIZE, TEXELS, WIDENING = "columns", "640x360", 112, 1.2
 CENTRE, RADIUS = np.array([0.0, 1.0, 0.0]), 1.0
 VERTEX = np.array([-2.1585, 3.0, 2.5622])  # at column-6's top, towards the sphere
-OPEN = "open-bowl"
+OPEN, TURNED = "open-sheet", 60
 
 
 def draw(figure):
     dump = "virtual-objects/gbuffer"
     run = render(SCENE, f"virtual-objects:texture={TEXELS}", size=SIZE, dump=dump)
     # Unwidened, so that texels and pixels are one.
-    pair = render(OPEN, "virtual-objects:widening=1,subdivide=0.05", size=SIZE, dump=dump)
+    pair = render(OPEN, "virtual-objects:widening=1", frame=TURNED, size=SIZE, dump=dump)
     figure.cite(run, pair)
     view = camera(SCENE, 0, SIZE)
     drawn = textures(run, view.eye)
@@ -80,7 +80,7 @@ def draw_walk(plot, axis, drawn, steps, root):
 
 def draw_pair(axes, pair):
     frame = pair.frame()
-    closed = textures(pair, camera(OPEN, 0, SIZE).eye)
+    closed = textures(pair, camera(OPEN, TURNED, SIZE).eye)
     left, top, right, bottom = images.box_around(closed.mask)
     crop = np.s_[top - 8 : bottom + 8, left - 16 : right + 16]
     for name, mask, normals, title in (

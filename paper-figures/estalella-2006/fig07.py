@@ -8,12 +8,12 @@ Claim: "Four images of the kitchen scene. This scene runs at 80 fps and contains
 from mirrorfigures import main
 from mirrorfigures.panels import strip
 
-SCENE, CASE = "kitchen-table1", "virtual-objects:subdivide=0.37"
+SCENE, CASES = "kitchen-table1", {"published": "virtual-objects:subdivide=0.37"}
 FRAMES = (0, 72, 132, 192)
 
 
 def draw(figure):
-    strip(figure, SCENE, CASE, FRAMES, size="640x400")
+    strip(figure, SCENE, CASES, FRAMES, size="640x400")
 
 
 if __name__ == "__main__":

@@ -9,12 +9,12 @@ comparison."
 from mirrorfigures import main
 from mirrorfigures.panels import strip
 
-SCENE, CASE = "ufo", "virtual-objects:subdivide=3.7"
+SCENE, CASES = "ufo", {"published": "virtual-objects:subdivide=3.7"}
 FRAMES = (80, 160, 240)
 
 
 def draw(figure):
-    strip(figure, SCENE, CASE, FRAMES, size="480x300")
+    strip(figure, SCENE, CASES, FRAMES, size="480x300")
 
 
 if __name__ == "__main__":

@@ -91,26 +91,35 @@ def single(figure: Figure, run: Run, label: str) -> None:
     figure.plot = plot
 
 
-def strip(figure: Figure, scene: str, case: str, frames: tuple[int, ...], *, size: str) -> None:
-    """Frames of a path side by side: the case above, the truth below; how far it errs in each."""
-    plot, axes = plt.subplots(2, len(frames), layout="constrained", squeeze=False)
+def strip(figure: Figure, scene: str, cases: dict[str, str], frames: tuple[int, ...], *, size: str) -> None:
+    """Frames of a path side by side: the cases above, by name, the truth below; how far each errs in each."""
+    plot, axes = plt.subplots(len(cases) + 1, len(frames), layout="constrained", squeeze=False)
     rows = []
-    for (above, below), frame in zip(axes.T, frames, strict=True):
-        ours, truth = (render(scene, of, frame=frame, size=size) for of in (case, "truth"))
-        figure.cite(ours, truth)
-        drawn, traced = ours.frame(), truth.frame()
-        _picture(above, images.to_srgb(drawn.colour), f"frame {frame}", [])
-        _picture(below, images.to_srgb(traced.colour), "ray traced", [])
-        error = images.colour_error(drawn.colour, traced.colour)
-        pictures = images.to_srgb(traced.colour), images.to_srgb(drawn.colour)
-        figure.compare(f"frame {frame}", *pictures, images.heat(error, traced.mirror))
-        rows.append([str(frame), *accuracy_lines(ours.row).replace("\n", "; ").split(": ", 1)[1:]])
-    height, width, _ = drawn.colour.shape
+    for column, frame in zip(axes.T, frames, strict=True):
+        truth = render(scene, "truth", frame=frame, size=size)
+        figure.cite(truth)
+        traced = truth.frame()
+        column[0].set_title(f"frame {frame}")
+        _show(column[-1], images.to_srgb(traced.colour))
+        for axis, (name, case) in zip(column, cases.items(), strict=False):
+            ours = render(scene, case, frame=frame, size=size)
+            figure.cite(ours)
+            drawn = ours.frame()
+            error = images.colour_error(drawn.colour, traced.colour)
+            pictures = images.to_srgb(traced.colour), images.to_srgb(drawn.colour)
+            _show(axis, pictures[1])
+            figure.compare(f"{name}, frame {frame}", *pictures, images.heat(error, traced.mirror))
+            said = accuracy_lines(ours.row).replace("\n", "; ").split(": ", 1)[1]
+            rows.append([name, str(frame), said])
+    for axis, name in zip(axes[:, 0], [*cases, "ray traced"], strict=True):
+        axis.set_ylabel(name)
+    height, width, _ = traced.colour.shape
     column = max(3.0, 8.4 / len(frames))
-    plot.set_size_inches(column * len(frames), 2 * column * height / width + 1.0)
+    plot.set_size_inches(column * len(frames), len(axes) * column * height / width + 0.6)
     plot.get_layout_engine().set(rect=(0, 0.04, 1, 0.95), h_pad=0.02, w_pad=0.03)
-    figure.table("Error", ["frame", "bad at 1 px"], rows)
-    figure.finding("; ".join(f"frame {frame}: bad at 1 px {bad}" for frame, bad in rows) + ".")
+    figure.table("Error", ["case", "frame", "bad at 1 px"], rows)
+    said = (f"{name}, frame {frame}: bad at 1 px {bad}" for name, frame, bad in rows)
+    figure.finding("; ".join(said).capitalize() + ".")
     figure.plot = plot
 
 

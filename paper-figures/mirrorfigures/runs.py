@@ -123,6 +123,15 @@ def film(scene: str, cases: list[str], *, size: str, frames: str) -> Run:
     return _run(arguments)
 
 
+def compare(truth: Run, other: Run) -> dict:
+    """The accuracy of a run's only frame held against another's: of scenes of one name, seen alike."""
+    arguments = ["diff", str(truth.exr()), str(other.exr()), "--json"]
+    done = subprocess.run([str(paths.binary()), *arguments], capture_output=True, check=False)
+    if done.returncode != 0:
+        raise RunFailed(_complaint(arguments, done))
+    return json.loads(done.stdout)["accuracy"]
+
+
 def _kept(file: Path, scene: str, cases: list[str], size: str, frames: str, fallback: str) -> Run:
     """The file's last row of each case."""
     begin, end = (int(n) for n in frames.split(".."))

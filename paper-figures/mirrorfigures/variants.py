@@ -1,6 +1,8 @@
 """Scenes made for one figure: a text, kept by its content below the folder of results."""
 
 import hashlib
+import shutil
+from pathlib import Path
 
 from . import paths
 
@@ -20,6 +22,14 @@ def changed(scene: str, old: str, new: str) -> str:
     if text.count(old) != 1:
         raise ValueError(f"{scene}.toml has {old!r} {text.count(old)} times, expected once")
     return scene_file(scene, text.replace(old, new))
+
+
+def alike(scene: str, old: str, new: str) -> str:
+    """As `changed`, but under the shipped scene's name: its frames may be held against one another."""
+    path = Path(changed(scene, old, new)).with_suffix("") / f"{scene}.toml"
+    path.parent.mkdir(exist_ok=True)
+    shutil.copyfile(path.parent.with_suffix(".toml"), path)
+    return str(path)
 
 
 def glide() -> str:

@@ -185,6 +185,9 @@ def row(scene: str, case: str, size: list[int], frame: int, timed: bool, baselin
         "displacement_px": {"median": 21.4, "p95": 74.2, "max": 132.8},
         "angle_deg": {"median": 5.0, "p95": 21.0, "max": 44.0},
         "relmse": 0.2, "relmse_shading": 0.19, "psnr": 17.2, "flip": {"mean": 0.2, "p95": 0.5, "ppd": 67.0, "exposure": 1.0},
+        "by_order": [{"order": order, "share": share, "missing": 0.02,
+                      "bad_share": {"0.5": 0.3, "1": 0.2, "2": 0.1, "4": 0.1}}
+                     for order, share in ((1, 0.9), (2, 0.1))],
     }  # fmt: skip
     device = {"name": "toy device", "driver": "toy 1.0", "api": "1.3.0", "is_software": True}
     time = {"median": scale, "min": 0.9 * scale, "p95": 1.3 * scale, "n": 20,
@@ -229,8 +232,8 @@ def path(case: str, first: int, end: int) -> list[dict]:
 
 def main() -> int:
     parser = argparse.ArgumentParser()
-    parser.add_argument("command", choices=["list", "render", "bench", "doctor"])
-    parser.add_argument("what", nargs="?")
+    parser.add_argument("command", choices=["list", "render", "bench", "diff", "doctor"])
+    parser.add_argument("what", nargs="*")
     parser.add_argument("--scene")
     parser.add_argument("--case", action="append")
     parser.add_argument("--size", default="160x90")
@@ -247,6 +250,8 @@ def main() -> int:
     args = parser.parse_args()
     if args.command == "list":
         print("toy device")
+    if args.command == "diff":
+        print(json.dumps({"accuracy": row("", "environment-map", [16, 9], 0, False, "")["accuracy"]}))
     if log := os.environ.get("FAKE_MIRRORBENCH_LOG"):
         with open(log, "a", encoding="utf-8") as file:
             file.write(" ".join(sys.argv[1:]) + "\n")

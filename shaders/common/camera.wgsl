@@ -38,3 +38,17 @@ fn facing(normal: vec3<f32>, incident: vec3<f32>) -> vec3<f32> {
     let n = normalize(normal);
     return select(n, -n, dot(n, incident) > 0.0);
 }
+
+// The largest cosine between eye ray and normal that is the rim of a surface seen from outside.
+const RIM: f32 = 0.25;
+
+// The normal on the eye's side. Interpolated ones may turn from the eye just at the rim: turned round they
+// would mirror what is behind the reflector, so they are turned back to where the eye ray grazes.
+fn seen_normal(in: vec3<f32>, incident: vec3<f32>) -> vec3<f32> {
+    let n = normalize(in);
+    let away = dot(n, incident);
+    if away <= 0.0 {
+        return n;
+    }
+    return select(-n, normalize(n - away * incident), away < RIM);
+}

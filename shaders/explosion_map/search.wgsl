@@ -135,7 +135,7 @@ fn corner_of(v: vec3<f32>) -> Corner {
     if away || dot(v - plane.point, plane.normal) < 0.0 {
         return Corner(v, 0u, v, packed_found(vec2(0.0), HIDDEN));
     }
-    return Corner(v, 0u, image_of(v, plane.point, plane.normal), packed_found(vec2(0.0), SHOWN));
+    return Corner(v, 0u, image_of(v, vec2(0.0), plane.point, plane.normal), packed_found(vec2(0.0), SHOWN));
 }
 
 @compute @workgroup_size(64)

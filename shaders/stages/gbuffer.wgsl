@@ -1,7 +1,7 @@
 // One reflector's points and normals as the eye sees them: T_P and T_N of Estalella et al. 2006,
 // section 4.
 #import bindings::surface::{Surface, surface_vertex}
-#import common::camera::{Camera, arriving}
+#import common::camera::{Camera, arriving, seen_normal}
 
 @group(0) @binding(30) var<uniform> camera: Camera;
 
@@ -19,20 +19,6 @@ struct Texel {
     // The fourth is 1 where the reflector is.
     @location(0) position: vec4<f32>,
     @location(1) normal: vec4<f32>,
-}
-
-// The largest cosine between eye ray and normal that is the rim of a surface seen from outside.
-const RIM: f32 = 0.25;
-
-// The normal on the eye's side. Interpolated ones may turn from the eye just at the rim: turned round they
-// would mirror what is behind the reflector, so they are turned back to where the eye ray grazes.
-fn seen_normal(in: vec3<f32>, incident: vec3<f32>) -> vec3<f32> {
-    let n = normalize(in);
-    let away = dot(n, incident);
-    if away <= 0.0 {
-        return n;
-    }
-    return select(-n, normalize(n - away * incident), away < RIM);
 }
 
 @fragment

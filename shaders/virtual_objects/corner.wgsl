@@ -5,9 +5,7 @@
 struct Corner {
     // World.
     position: vec3<f32>,
-    // How much of it is the second and the third corner of the triangle it was made in, 2^-15 each; 0
-    // for the scene's vertices.
-    weights: u32,
+    pad: u32,
     // V', world.
     image: vec3<f32>,
     // The texel found, halves: x | y << 14 | status << 28.

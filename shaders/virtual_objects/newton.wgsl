@@ -1,9 +1,16 @@
 // From near a reflection point to the point itself, between texels: Gauss-Newton steps on N x H, H half
 // way between eye and vertex, over points and normals interpolated from four texels.
+//
+// Refraction has the same form. With unit directions e from P to the eye and v to the vertex behind the surface,
+// of index i over that before it, Snell's law says that along the surface the light's directions, each as long as
+// its side's index, do not change: N x (e + i v) = 0. (Fermat: |EP| + i |PV| is stationary.)
 #define_import_path virtual_objects::newton
 
 #import common::camera::arriving
-#import virtual_objects::reflector::{camera, evaluations, normal_at, point_at}
+#import virtual_objects::reflector::{camera, evaluations, is_out_of_sight, normal_at, point_at, search}
+#ifdef SECOND
+#import virtual_objects::reflector::first_at
+#endif
 
 // Steps that bring any start within a few texels home; most take three.
 const MOST_STEPS: u32 = 8u;
@@ -34,6 +41,12 @@ struct Patch {
     p_y: vec3<f32>,
     n_x: vec3<f32>,
     n_y: vec3<f32>,
+#ifdef SECOND
+    // P1 and its slopes.
+    first: vec3<f32>,
+    first_x: vec3<f32>,
+    first_y: vec3<f32>,
+#endif
 }
 
 fn is_whole(corner: vec2<i32>) -> bool {
@@ -79,12 +92,56 @@ fn patch_at(place: vec2<f32>) -> Patch {
     out.n_x = mix(n_10 - n_00, n_11 - n_01, f.y);
     out.n_y = mix(n_01 - n_00, n_11 - n_10, f.x);
     out.n = normalize(mix(n_00, n_01, f.y) + f.x * out.n_x);
+#ifdef SECOND
+    let first_00 = first_at(corner).xyz;
+    let first_10 = first_at(corner + vec2(1, 0)).xyz;
+    let first_01 = first_at(corner + vec2(0, 1)).xyz;
+    let first_11 = first_at(corner + vec2(1, 1)).xyz;
+    out.first_x = mix(first_10 - first_00, first_11 - first_01, f.y);
+    out.first_y = mix(first_01 - first_00, first_11 - first_10, f.x);
+    out.first = mix(first_00, first_01, f.y) + f.x * out.first_x;
+#endif
     return out;
 }
 
 // How a unit direction towards a point `away` metres off turns as its start moves by `slope`.
 fn turn(direction: vec3<f32>, away: f32, slope: vec3<f32>) -> vec3<f32> {
     return (direction * dot(direction, slope) - slope) / away;
+}
+
+// Unit direction towards where a patch is seen from, and how it turns a texel.
+struct Sight {
+    towards: vec3<f32>,
+    x: vec3<f32>,
+    y: vec3<f32>,
+}
+
+fn sight_of(at: Patch) -> Sight {
+#ifdef SECOND
+    // Every point of the second reflector has an eye of its own, which moves with it.
+    let away = distance(at.first, at.p);
+    let towards = (at.first - at.p) / away;
+    let x = turn(towards, away, at.p_x - at.first_x);
+    return Sight(towards, x, turn(towards, away, at.p_y - at.first_y));
+#else
+    let towards = -arriving(camera, at.p);
+    // Parallel eye rays do not turn.
+    let away = select(distance(camera.eye, at.p), 1e30, camera.orthographic == 1u);
+    return Sight(towards, turn(towards, away, at.p_x), turn(towards, away, at.p_y));
+#endif
+}
+
+// The Gauss-Newton step, texels, towards where `law`, of slopes `j_x` and `j_y`, is least.
+fn step_towards(law: vec3<f32>, j_x: vec3<f32>, j_y: vec3<f32>) -> vec2<f32> {
+    let a = dot(j_x, j_x);
+    let b = dot(j_x, j_y);
+    let c = dot(j_y, j_y);
+    // Damped a little, so that a fold does not throw the step.
+    let damping = 1e-5 * (a + c) + 1e-30;
+    let determinant = (a + damping) * (c + damping) - b * b;
+    let g_x = dot(j_x, law);
+    let g_y = dot(j_y, law);
+    return vec2(b * g_y - (c + damping) * g_x, b * g_x - (a + damping) * g_y) / determinant;
 }
 
 // From a place to the reflection point of `v`.
@@ -102,30 +159,25 @@ fn newton(begin: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
             continue;
         }
         evaluations += 1u;
-        let towards_eye = -arriving(camera, at.p);
-        // Parallel eye rays do not turn.
-        let eye_away = select(distance(camera.eye, at.p), 1e30, camera.orthographic == 1u);
+        let sight = sight_of(at);
         let away = max(distance(v, at.p), 1e-9);
         let towards_v = (v - at.p) / away;
-        let h = towards_eye + towards_v;
+#ifdef REFRACTED
+        let index = search.index;
+#else
+        let index = 1.0;
+#endif
+        let h = sight.towards + index * towards_v;
         let law = cross(at.n, h);
-        let h_x = turn(towards_eye, eye_away, at.p_x) + turn(towards_v, away, at.p_x);
-        let h_y = turn(towards_eye, eye_away, at.p_y) + turn(towards_v, away, at.p_y);
+        let h_x = sight.x + index * turn(towards_v, away, at.p_x);
+        let h_y = sight.y + index * turn(towards_v, away, at.p_y);
         let j_x = cross(at.n_x, h) + cross(at.n, h_x);
         let j_y = cross(at.n_y, h) + cross(at.n, h_y);
         out.place = place;
         out.position = at.p;
         out.normal = at.n;
         out.steps = step + 1u;
-        let a = dot(j_x, j_x);
-        let b = dot(j_x, j_y);
-        let c = dot(j_y, j_y);
-        // Damped a little, so that a fold does not throw the step.
-        let damping = 1e-5 * (a + c) + 1e-30;
-        let determinant = (a + damping) * (c + damping) - b * b;
-        let g_x = dot(j_x, law);
-        let g_y = dot(j_y, law);
-        var delta = vec2(b * g_y - (c + damping) * g_x, b * g_x - (a + damping) * g_y) / determinant;
+        var delta = step_towards(law, j_x, j_y);
         delta *= min(1.0, REACH / max(length(delta), 1e-9));
         place += delta;
         let arrived = length(delta) < ARRIVED;
@@ -136,7 +188,12 @@ fn newton(begin: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
             out.position += at.p_x * delta.x + at.p_y * delta.y;
             out.normal = normalize(at.n + at.n_x * delta.x + at.n_y * delta.y);
         }
+#ifdef REFRACTED
+        // H is short where the index is near 1.
+        out.found = dot(left, left) < LAW * LAW && !is_out_of_sight(v, at.p, at.n);
+#else
         out.found = dot(left, left) < LAW * LAW * dot(h, h) && dot(at.n, h) > 0.0;
+#endif
         if arrived {
             break;
         }

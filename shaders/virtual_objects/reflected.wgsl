@@ -9,14 +9,22 @@ enable primitive_index;
 #import virtual_objects::residual::{
     camera, displacement, reflector_id, reflector_normal, reflector_position
 }
+#ifdef REFRACTED
+#import bindings::departure::LOBE_REFRACTED
+#endif
+#ifdef SECOND
+#import virtual_objects::twice::{second_of, twice_at}
+#endif
 
 struct Reflected {
+    // The reflector that shows them, and the one whose pixels they are drawn in: the same, or the one
+    // that shows that reflector.
     reflector: u32,
     // Vertices of the scene.
     vertices: u32,
     // Pixels a fragment may be from where it belongs without a flag; 0: none are flagged.
     residual: f32,
-    pad: u32,
+    first: u32,
 }
 @group(0) @binding(0) var<uniform> reflected: Reflected;
 @group(0) @binding(1) var<storage, read> corners: array<Corner>;
@@ -53,13 +61,17 @@ fn corner_surface(corner: u32, source: u32, object: u32) -> Surface {
     if corner < reflected.vertices {
         return surface_vertex(corner, object);
     }
-    let weights = vec2<f32>(vec2(corners[corner].weights & 0xffffu, corners[corner].weights >> 16u))
-        / 32768.0;
     let a = surface_vertex(source_indices[3u * source], object);
     let b = surface_vertex(source_indices[3u * source + 1u], object);
     let c = surface_vertex(source_indices[3u * source + 2u], object);
     var out = a;
     out.position = corners[corner].position;
+    let one = b.position - a.position;
+    let other = c.position - a.position;
+    let across = cross(one, other);
+    let within = out.position - a.position;
+    let weights = vec2(dot(cross(within, other), across), dot(cross(one, within), across))
+        / max(dot(across, across), 1e-30);
     out.normal += weights.x * (b.normal - a.normal) + weights.y * (c.normal - a.normal);
     out.uv += weights.x * (b.uv - a.uv) + weights.y * (c.uv - a.uv);
     return out;
@@ -99,12 +111,17 @@ fn fragment(
 ) -> RecordTargets {
     let pixel = vec2<u32>(in.clip.xy);
     // Two reflectors may share a stencil value; the id image decides.
-    if textureLoad(reflector_id, pixel, 0).x != reflected.reflector {
+    if textureLoad(reflector_id, pixel, 0).x != reflected.first {
         discard;
     }
 #ifndef TWO_SIDED
     // A mirror turns the winding round, so what looks like a front is a back or was never mirrored.
-    if front {
+#ifdef REFRACTED
+    let is_back = !front;
+#else
+    let is_back = front;
+#endif
+    if is_back {
         discard;
     }
 #endif
@@ -122,12 +139,19 @@ fn fragment(
         discard;
     }
 #endif
-    let bounce = textureLoad(reflector_position, pixel, 0).xyz;
+    var bounce = textureLoad(reflector_position, pixel, 0).xyz;
 #ifdef HIDDEN_CUT
     // A mirror shows nothing that lies behind it.
     if dot(in.position - bounce, textureLoad(reflector_normal, pixel, 0).xyz) < 0.0 {
         discard;
     }
+#endif
+#ifdef SECOND
+    let twice = twice_at(pixel, reflected.first, bounce);
+    if !twice.is_shown || twice.second != reflected.reflector {
+        discard;
+    }
+    bounce = twice.position;
 #endif
     let source = Surface(in.clip, in.position, in.normal, in.uv, in.object);
     let colour = surface_colour(source, in.position - bounce);
@@ -141,5 +165,11 @@ fn fragment(
     if reflected.residual > 0.0 {
         chain.flag = displacement(pixel, in.position) > reflected.residual;
     }
+#ifdef REFRACTED
+    chain.lobe = LOBE_REFRACTED;
+#endif
+#ifdef SECOND
+    chain = second_of(chain, twice);
+#endif
     return record_targets(chain);
 }

@@ -21,7 +21,8 @@ struct Search {
     reflector: u32,
     // The coarsest level of the pyramid, where there is one.
     top: i32,
-    pad_a: u32,
+    // Refractive index behind the surface over that before it, where what is refracted is sought.
+    index: f32,
     pad_b: u32,
     pad_c: u32,
 }
@@ -30,6 +31,13 @@ struct Search {
 @group(0) @binding(2) var mirror_normal: texture_2d<f32>;
 // That of the textures.
 @group(0) @binding(30) var<uniform> camera: Camera;
+#ifdef SECOND
+// P1 and N1: the textures show this reflector in another, and these that one, texel by texel.
+@group(0) @binding(36) var first_position: texture_2d<f32>;
+@group(0) @binding(37) var first_normal: texture_2d<f32>;
+// Pixels of the view that show it so, by object.
+@group(0) @binding(38) var<storage, read> shown_pixels: array<u32>;
+#endif
 
 // x | y << 16 of no texel.
 const NOWHERE: u32 = 0xffffffffu;
@@ -59,6 +67,48 @@ fn normal_at(texel: vec2<i32>) -> vec3<f32> {
     return textureLoad(mirror_normal, texel, 0).xyz;
 }
 
+#ifdef SECOND
+fn first_at(texel: vec2<i32>) -> vec4<f32> {
+    if any(texel < vec2(0)) || any(texel >= vec2<i32>(search.size)) {
+        return vec4(0.0);
+    }
+    return textureLoad(first_position, texel, 0);
+}
+
+// P1 between texels; at the rim that of the texel.
+fn first_near(place: vec2<f32>) -> vec3<f32> {
+    let corner = vec2<i32>(floor(place - 0.5));
+    let f = place - 0.5 - vec2<f32>(corner);
+    let p_00 = first_at(corner);
+    let p_10 = first_at(corner + vec2(1, 0));
+    let p_01 = first_at(corner + vec2(0, 1));
+    let p_11 = first_at(corner + vec2(1, 1));
+    if p_00.w * p_10.w * p_01.w * p_11.w == 0.0 {
+        return first_at(vec2<i32>(place)).xyz;
+    }
+    return mix(mix(p_00, p_10, f.x), mix(p_01, p_11, f.x), f.y).xyz;
+}
+#endif
+
+// Unit direction in which sight arrives at the point of a texel: from the eye, or from the first
+// reflector.
+fn arriving_at(texel: vec2<i32>, p: vec3<f32>) -> vec3<f32> {
+#ifdef SECOND
+    return normalize(p - first_at(texel).xyz);
+#else
+    return arriving(camera, p);
+#endif
+}
+
+// The same at a place between texels.
+fn arriving_near(place: vec2<f32>, p: vec3<f32>) -> vec3<f32> {
+#ifdef SECOND
+    return normalize(p - first_near(place));
+#else
+    return arriving(camera, p);
+#endif
+}
+
 // Where a world point is on the textures, in texels; off them behind the eye.
 fn texel_of(v: vec3<f32>) -> vec2<f32> {
     let clip = camera.clip_from_world * vec4(v, 1.0);
@@ -71,13 +121,29 @@ fn mirrored(v: vec3<f32>, p: vec3<f32>, n: vec3<f32>) -> vec3<f32> {
     return v - 2.0 * dot(v - p, n) * n;
 }
 
-// V' of a vertex that is not hidden, from its reflection point.
-fn image_of(v: vec3<f32>, p: vec3<f32>, n: vec3<f32>) -> vec3<f32> {
-#ifdef IMAGE_PUSH
+// V' of a vertex that is not hidden, from its reflection point; the place matters in a second bounce alone.
+fn image_of(v: vec3<f32>, place: vec2<f32>, p: vec3<f32>, n: vec3<f32>) -> vec3<f32> {
+#ifdef SECOND
+    // As far behind P1, as the eye sees it, as the path from there is long.
+    let first = first_near(place);
+    return first + (distance(first, p) + distance(p, v)) * arriving(camera, first);
+#else ifdef REFRACTED
+    return p + distance(v, p) * arriving(camera, p);
+#else ifdef IMAGE_PUSH
     // At an exact point the same; at one found roughly the plane's error grows with the distance.
     return p + distance(v, p) * arriving(camera, p);
 #else
     return mirrored(v, p, n);
+#endif
+}
+
+// Whether a point is on the side of a plane where it is not seen by the plane's reflection, or not
+// through its refraction.
+fn is_out_of_sight(v: vec3<f32>, p: vec3<f32>, n: vec3<f32>) -> bool {
+#ifdef REFRACTED
+    return dot(v - p, n) > 0.0;
+#else
+    return dot(v - p, n) < 0.0;
 #endif
 }
 
@@ -91,7 +157,13 @@ fn quality(texel: vec2<i32>, v: vec3<f32>, inverse: bool) -> f32 {
     evaluations += 1u;
     let n = normal_at(texel);
     let seen = select(v, mirrored(v, p.xyz, n), inverse);
-    let half = normalize(seen - p.xyz) - arriving(camera, p.xyz);
+#ifdef REFRACTED
+    // Of Snell's law what is left along the surface, see newton.wgsl.
+    let law = cross(n, search.index * normalize(v - p.xyz) - arriving_at(texel, p.xyz));
+    let scale = 1.0 + search.index;
+    return select(-dot(law, law) / (scale * scale), OUTSIDE + 1.0, is_out_of_sight(v, p.xyz, n));
+#else
+    let half = normalize(seen - p.xyz) - arriving_at(texel, p.xyz);
 #ifdef OBJECTIVE_CROSS
     // -|N x B|^2, carried on past 90 degrees: N.B is flat at its top and hides small angles there.
     let c = cross(n, half);
@@ -99,5 +171,6 @@ fn quality(texel: vec2<i32>, v: vec3<f32>, inverse: bool) -> f32 {
     return select(-sine, sine - 2.0, dot(n, half) < 0.0);
 #else
     return dot(n, normalize(half));
+#endif
 #endif
 }

@@ -8,8 +8,11 @@
     NOWHERE, evaluations, image_of, mirrored, normal_at, packed_texel, point_at, search, unpacked_texel
 }
 #import virtual_objects::walk::walk
+#ifdef SECOND
+#import virtual_objects::reflector::shown_pixels
+#endif
 #ifdef PYRAMID
-#import virtual_objects::find::{corner_of, hidden_corner, is_hidden, point_from, steps}
+#import virtual_objects::find::{corner_of, hidden_corner, is_hidden, point_of, steps}
 #endif
 
 // Whose vertex each is.
@@ -45,7 +48,7 @@ fn walked_to(begin: vec2<i32>, v: vec3<f32>, inverse: bool) -> ReflectionPoint {
 fn reflection_point(index: u32, v: vec3<f32>) -> ReflectionPoint {
     var out: ReflectionPoint;
 #ifdef START_PYRAMID
-    out = point_from(vec2(0.0), false, v);
+    out = point_of(v);
     out.steps = steps;
 #else
     let begin = first_texel(index);
@@ -77,7 +80,7 @@ fn published_corner(v: vec3<f32>, found: ptr<function, ReflectionPoint>) -> Corn
     }
     // "If we detect that this condition does not apply, we can assume that V is in Region C."
     if dot(v - point.position, point.normal) >= 0.0 {
-        let image = image_of(v, point.position, point.normal);
+        let image = image_of(v, point.place, point.position, point.normal);
         return Corner(v, 0u, image, packed_found(point.place, SHOWN));
     }
     var p = point.position;
@@ -103,6 +106,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if index >= search.total || owners[index] == search.reflector {
         return;
     }
+#ifdef SECOND
+    if shown_pixels[search.reflector] == 0u {
+        return;
+    }
+#endif
     let v = world_position(objects[owners[index]], vertices[index].position);
     var found: ReflectionPoint;
 #ifdef HIDDEN_CLIP

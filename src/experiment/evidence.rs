@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::lab::Lab;
 use crate::error::Result;
-use crate::measure::{Accuracy, BadShare, Flip, Quantiles, accuracy};
+use crate::measure::{Accuracy, BadShare, Flip, OrderAccuracy, Quantiles, accuracy, mean_by_order};
 use crate::methods::Case;
 use crate::scene::Scene;
 use crate::truth::{Cache, Tracer, TruthOptions};
@@ -67,6 +67,7 @@ impl Evidence {
     pub fn accuracy(&self) -> Option<Accuracy> {
         let all: Vec<&Accuracy> = self.frames.iter().map(|(_, accuracy)| accuracy).collect();
         let first = all.first()?;
+        let orders: Vec<&[OrderAccuracy]> = all.iter().map(|a| a.by_order.as_slice()).collect();
         let mean = |field: fn(&Accuracy) -> f64| mean(all.iter().map(|a| field(a))).unwrap_or(0.0);
         Some(Accuracy {
             bad_share: BadShare {
@@ -93,6 +94,7 @@ impl Evidence {
                 ppd: mean(|a| a.flip.ppd),
                 exposure: first.flip.exposure,
             },
+            by_order: mean_by_order(&orders),
         })
     }
 }
@@ -132,6 +134,7 @@ pub(super) mod tests {
             relmse_shading: x,
             psnr: None,
             flip: Flip { mean: x, p95: x, ppd: 67.0, exposure: 1.0 },
+            by_order: Vec::new(),
         }
     }
 

@@ -10,7 +10,7 @@ use super::command::full_barrier;
 use crate::error::{Error, Result};
 
 /// Passes one submit can hold, bursts included.
-const MAX_PASSES: u32 = 4096;
+const MAX_PASSES: u32 = 1 << 14;
 
 /// Time of one pass.
 #[derive(Clone, Debug, Default, PartialEq)]

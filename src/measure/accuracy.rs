@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::colour::{self, EXPOSURE};
 use super::judge::{Judged, judge_all};
+use super::orders::{OrderAccuracy, by_order};
 use crate::error::{Error, Result};
 use crate::scene::{FrameRecord, NO_OBJECT};
 use crate::truth::Tracer;
@@ -48,6 +49,9 @@ pub struct Accuracy {
     /// Decibels, after tone mapping; null where the tone-mapped pictures are equal.
     pub psnr: Option<f64>,
     pub flip: Flip,
+    /// By the number of reflectors the truth met, rising.
+    #[serde(default)]
+    pub by_order: Vec<OrderAccuracy>,
 }
 
 /// Share of bad pixels by the displacement still tolerated, in pixels.
@@ -185,6 +189,7 @@ pub fn accuracy(
         relmse_shading: colour::relative_mse(judged.iter().map(|judged| judged.shaded)),
         psnr: colour::psnr(pictures()),
         flip: flip.0,
+        by_order: by_order(truth, &compared, &judged),
     };
     Ok((accuracy, maps))
 }

@@ -8,6 +8,7 @@ mod drawn;
 mod field;
 mod judge;
 mod mirrors;
+mod orders;
 pub mod ratio;
 mod root;
 pub mod stability;
@@ -18,4 +19,5 @@ mod tree;
 mod usual;
 
 pub use accuracy::{Accuracy, BadShare, Class, Flip, Maps, Quantiles, accuracy};
+pub use orders::{OrderAccuracy, mean_by_order};
 pub use stability::{Jitter, PathFrame, PathMeasure, Stability};

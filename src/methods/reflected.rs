@@ -1,15 +1,16 @@
 //! The reflected scene of forward methods, drawn through a reflector's stencil.
 
+use std::sync::Arc;
+
 use bytemuck::{Pod, Zeroable};
 
-use super::Setup;
 use super::source::Source;
 use crate::error::Result;
 use crate::gpu::{
-    Attachments, Buffer, Defines, Depth, Frame, GraphicsPipeline, Load, Pass, Stencil,
+    Attachments, Buffer, Defines, Depth, Device, Frame, GraphicsPipeline, Load, Pass, Stencil,
 };
 use crate::scene::ObjectId;
-use crate::stages::{GpuScene, ReflectionRecord, View};
+use crate::stages::{GpuScene, RecordMode, ReflectionRecord, View};
 
 /// WGSL `Reflected` of `shaders/virtual_objects/reflected.wgsl`.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -18,7 +19,7 @@ struct ReflectedUniform {
     reflector: ObjectId,
     vertices: u32,
     residual: f32,
-    pad: u32,
+    first: ObjectId,
 }
 
 /// WGSL `Corner` of `shaders/virtual_objects/corner.wgsl`: a vertex and where a reflector shows it.
@@ -26,7 +27,7 @@ struct ReflectedUniform {
 #[repr(C)]
 pub struct Corner {
     pub position: [f32; 3],
-    pub weights: u32,
+    pub pad: u32,
     pub image: [f32; 3],
     /// Texel found, in halves: x | y << 14 | status << 28.
     pub found: u32,
@@ -40,34 +41,43 @@ pub struct Reflected {
 
 impl Reflected {
     /// `residual_px`: pixels a fragment may break the law of reflection by before it is flagged; 0: none is.
-    pub fn new(setup: &Setup, defines: Defines, residual_px: f32) -> Result<Reflected> {
+    ///
+    /// # Errors
+    /// As of pipelines.
+    pub fn new(
+        device: &Arc<Device>,
+        mode: RecordMode,
+        defines: Defines,
+        residual_px: f32,
+    ) -> Result<Reflected> {
         let attachments = Attachments {
-            colours: setup.mode.formats(),
+            colours: mode.formats(),
             depth_stencil: true,
             depth: Depth::Nearest,
             stencil: Stencil::Within,
         };
         let file = "virtual_objects/reflected.wgsl";
-        let pipeline = GraphicsPipeline::new(setup.device, file, defines, &attachments)?;
+        let pipeline = GraphicsPipeline::new(device, file, defines, &attachments)?;
         Ok(Reflected { pipeline, residual_px })
     }
 
-    /// The pass that draws what one reflector shows, its [`Corner`]s found, into the record of a view: to be
-    /// drawn with the reflector's stencil. `name` begins the pass's name.
+    /// The pass that draws what one reflector shows, its [`Corner`]s found, into the record of a view: into
+    /// the pixels of `first`, which is that reflector or one that shows it, to be drawn with the stencil of
+    /// `first`. `name` begins the pass's name.
     pub fn pass<'f>(
         &'f self,
         frame: &'f mut Frame,
         scene: &GpuScene,
         name: &str,
-        (view, record, reflector): (&'f View, &'f ReflectionRecord, ObjectId),
-        source: &Source,
-        corners: &Buffer,
+        (view, record): (&'f View, &'f ReflectionRecord),
+        (reflector, first): (ObjectId, ObjectId),
+        (source, corners): (&Source, &Buffer),
     ) -> Pass<'f> {
         let reflected = ReflectedUniform {
             reflector,
             vertices: source.count,
             residual: self.residual_px,
-            pad: 0,
+            first,
         };
         let pass = frame.pass(&format!("{name}/reflected")).graphics(&self.pipeline);
         record
@@ -91,7 +101,7 @@ mod tests {
     #[rustfmt::skip]
     fn structs_are_laid_out_as_their_wgsl_twins() {
         assert_layout!("virtual_objects/reflected.wgsl", "Reflected", ReflectedUniform,
-            reflector, vertices, residual, pad);
-        assert_layout!("virtual_objects/reflected.wgsl", "Corner", Corner, position, weights, image, found);
+            reflector, vertices, residual, first);
+        assert_layout!("virtual_objects/reflected.wgsl", "Corner", Corner, position, pad, image, found);
     }
 }

@@ -39,7 +39,7 @@ pub struct Lists {
     pub owners: Vec<ObjectId>,
     triangles: Vec<u32>,
     first_triangles: Vec<u32>,
-    indices: Vec<u32>,
+    pub indices: Vec<u32>,
     ranges: Vec<(u32, u32)>,
     first_vertices: Vec<u32>,
 }

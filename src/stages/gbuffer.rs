@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::{CameraUniform, GpuScene};
 use crate::error::Result;
 use crate::gpu::{
-    Attachments, Depth, Device, Format, Frame, GraphicsPipeline, Image, Load, Shape, Stencil,
+    Attachments, Depth, Device, Format, Frame, GraphicsPipeline, Image, Load, Pass, Shape, Stencil,
 };
 use crate::scene::ObjectId;
 
@@ -54,14 +54,16 @@ impl GBuffer {
         reflector: ObjectId,
         camera: &CameraUniform,
     ) -> Result<()> {
-        let clear = Load::Clear([0.0; 4]);
         let pass = frame.pass(&format!("{name}/gbuffer")).graphics(&self.surfaces);
-        scene
-            .bind(pass)
-            .uniform("camera", camera)
-            .colour("position", &self.position, clear)
+        self.attach(scene.bind(pass).uniform("camera", camera))
+            .draw(|draw| scene.draw_closed(draw, reflector))
+    }
+
+    /// Draw something else into it, in a pass whose shader has the same two targets.
+    pub fn attach<'f>(&'f self, pass: Pass<'f>) -> Pass<'f> {
+        let clear = Load::Clear([0.0; 4]);
+        pass.colour("position", &self.position, clear)
             .colour("normal", &self.normal, clear)
             .depth_stencil(&self.depth, clear, Load::ClearWords([0; 4]))
-            .draw(|draw| scene.draw_closed(draw, reflector))
     }
 }

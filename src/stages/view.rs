@@ -131,6 +131,24 @@ impl CameraUniform {
         })
     }
 
+    /// The same camera with its far plane at infinity or, where rays are parallel, `beyond` metres
+    /// further off.
+    pub fn deepened(mut self, beyond: f32) -> CameraUniform {
+        let mut rows = Mat4::from_cols_array_2d(&self.clip_from_world).transpose();
+        let (eye, forward) = (self.eye(), Vec3::from_array(self.forward));
+        // Of the depth in clip space, linear in the distance ahead: its slope, and its value at the eye.
+        let (slope, at_eye) = (rows.z_axis.xyz().dot(forward), rows.z_axis.dot(eye.extend(1.0)));
+        let (slope, at_eye) = if self.orthographic == 1 {
+            let [near, far] = [(1.0 - at_eye) / slope, beyond - at_eye / slope];
+            ((near - far).recip(), far / (far - near))
+        } else {
+            (0.0, at_eye / (1.0 - slope))
+        };
+        rows.z_axis = (slope * forward).extend(at_eye - slope * forward.dot(eye));
+        self.clip_from_world = rows.transpose().to_cols_array_2d();
+        self
+    }
+
     /// Where world points are on the image, -1 to 1, y down; `None` behind the eye.
     pub fn project(&self, point: Vec3) -> Option<Vec2> {
         let clip = Mat4::from_cols_array_2d(&self.clip_from_world) * point.extend(1.0);
@@ -216,6 +234,30 @@ mod tests {
         assert!(wide.project(point).unwrap().abs_diff_eq(ndc / 1.5, 1e-5));
         assert!((wide.half_width / uniform.half_width - 1.5).abs() < 1e-6);
         assert_eq!(uniform.project(camera.eye - (camera.target - camera.eye)), None);
+    }
+
+    #[test]
+    fn a_deepened_camera_keeps_places_and_near_plane_and_sees_further() {
+        let projections =
+            [Projection::Perspective { fov_y: 1.0 }, Projection::Orthographic { height: 2.0 }];
+        for projection in projections {
+            let (eye, target, up) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(0.2, 0.5, -0.3), Vec3::Y);
+            let camera = Camera { eye, target, up, projection, near: 0.5, far: 4.0 };
+            let uniform = CameraUniform::new(&camera, [64, 48]);
+            let deep = uniform.deepened(50.0);
+            let ahead = (target - eye).normalize();
+            let depth = |camera: &CameraUniform, away: f32| {
+                let matrix = Mat4::from_cols_array_2d(&camera.clip_from_world);
+                let clip = matrix * (eye + away * ahead).extend(1.0);
+                clip.z / clip.w
+            };
+            assert!((depth(&deep, 0.5) - 1.0).abs() < 1e-5);
+            assert!(depth(&uniform, 30.0) < 0.0);
+            assert!(depth(&deep, 53.0) > 0.0 && depth(&deep, 53.0) < depth(&deep, 30.0));
+            let point = Vec3::new(0.3, 0.4, 0.1);
+            let places = [uniform.project(point).unwrap(), deep.project(point).unwrap()];
+            assert!(places[0].abs_diff_eq(places[1], 1e-6));
+        }
     }
 
     #[test]

@@ -98,7 +98,7 @@ fn reflected(setup: &Setup) -> Result<Reflected> {
     let hidden = if setup.values.is("hidden", "drop") { "HIDDEN_DROPPED" } else { "HIDDEN_CUT" };
     let mut defines = setup.mode.defines();
     defines.extend(["TWO_SIDED", "DRAW_HIDDEN", hidden].map(|define| (define, 1)));
-    Reflected::new(setup, &defines, setup.values.f32("residual_px"))
+    Reflected::new(setup.device, setup.mode, &defines, setup.values.f32("residual_px"))
 }
 
 impl ReflectionMethod for ExplosionMap {
@@ -134,13 +134,12 @@ impl ReflectionMethod for ExplosionMap {
             let spheres = self.map.fill(frame, scene, &view.camera, reflector)?;
             let parts = (&self.map, &spheres, reflector);
             self.search.run(frame, scene, (&view.camera, record), parts, source, corners)?;
-            let to = (view, record, object);
-            self.reflected.pass(frame, scene, "explosion-map", to, source, corners).draw(
-                |draw| {
-                    draw.stencil_reference(Footprint::stencil_of(object));
-                    source.draw(draw, object);
-                },
-            )?;
+            let (name, to, mirrors) = ("explosion-map", (view, record), (object, object));
+            let pass = self.reflected.pass(frame, scene, name, to, mirrors, (source, corners));
+            pass.draw(|draw| {
+                draw.stencil_reference(Footprint::stencil_of(object));
+                source.draw(draw, object);
+            })?;
         }
         Ok(())
     }

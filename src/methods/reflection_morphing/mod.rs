@@ -109,7 +109,7 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         nodes: Nodes::new(recipe, grid, files.then(Cache::of_user).transpose()?),
         environment: MirroredEnvironment::new(device, mode)?,
         morph: Morph::new(device, mode, values.is("lookup", "brute-force"))?,
-        reflected: Reflected::new(setup, &defines, 0.0)?,
+        reflected: Reflected::new(device, mode, &defines, 0.0)?,
         state: None,
     }))
 }
@@ -148,14 +148,19 @@ impl ReflectionMethod for ReflectionMorphing {
             let mirror = morph::Mirror { object, place, rank: rank_of(scene, object) };
             self.morph.look_up(frame, scene, (source, vertices), &self.nodes, &mirror, record)?;
             self.morph.run(frame, scene, (source, vertices), &corners, &mirror, (view, record))?;
-            let to = (view, &*record, object);
-            let corners = &vertices.corners;
-            self.reflected.pass(frame, scene, "reflection-morphing", to, source, corners).draw(
-                |draw| {
-                    draw.stencil_reference(Footprint::stencil_of(object));
-                    source.draw(draw, object);
-                },
-            )?;
+            let (to, drawn) = ((view, &*record), (source, &vertices.corners));
+            let pass = self.reflected.pass(
+                frame,
+                scene,
+                "reflection-morphing",
+                to,
+                (object, object),
+                drawn,
+            );
+            pass.draw(|draw| {
+                draw.stencil_reference(Footprint::stencil_of(object));
+                source.draw(draw, object);
+            })?;
         }
         self.nodes.slots.iter_mut().flatten().for_each(|node| node.is_asked = true);
         Ok(())

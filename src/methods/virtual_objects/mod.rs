@@ -12,28 +12,39 @@
 //! `@revised`: textures that show all of the reflector, searches from coarse to fine that end between
 //! texels and remember nothing, hidden parts cut off along the reflector's shadow volume, triangles halved
 //! where their middles are drawn in the wrong place, and a flag where the law of reflection is broken.
+//!
+//! `bounces=2`: mirrors seen in mirrors reflect too, see `second`. Glass is looked through by its first surface,
+//! see `refraction`.
 
+mod draw;
+mod edges;
 mod params;
 mod pyramid;
+mod refraction;
 mod rule;
 mod search;
+mod second;
 mod split;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use crate::error::Result;
-use crate::gpu::Frame;
-use crate::scene::ObjectId;
+use crate::gpu::{Device, Frame};
+use crate::scene::{Lobe, ObjectId, Scene};
 use crate::stages::{
-    CameraUniform, Footprint, GBuffer, GpuScene, MirroredEnvironment, RecordMode, ReflectionRecord,
-    View,
+    CameraUniform, GBuffer, GpuScene, MirroredEnvironment, RecordMode, ReflectionRecord, View,
 };
 
-use super::reflected::Reflected;
 use super::source::{self, Lists, Source};
 use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
+use draw::{Drawing, Drawn};
+use edges::Edges;
+use refraction::Refraction;
 use rule::Rule;
 use search::{Found, Mirror, Search};
+use second::{Before, Second};
 use split::Split;
 
 pub const INFO: MethodInfo = MethodInfo {
@@ -43,11 +54,12 @@ pub const INFO: MethodInfo = MethodInfo {
     family: Family::FeedForward,
     depends: Changes { objects: false, reflectors: false, shading: false },
     flags: true,
-    refracts: false,
+    refracts: true,
     variants: &["published", "revised"],
     params: params::PARAMS,
-    limits: "one reflection a vertex and reflector, so convex reflectors; one bounce; @published: straight \
-             between vertices",
+    limits: "one reflection a vertex and reflector, so convex reflectors; one bounce, or two; what glass \
+             lets through by its first surface alone, and not @published, which is straight between \
+             vertices",
     passes: &[
         "virtual-objects/subdivide",
         "virtual-objects/vertices",
@@ -59,8 +71,14 @@ pub const INFO: MethodInfo = MethodInfo {
         "virtual-objects/cells",
         "virtual-objects/search",
         "virtual-objects/clear",
+        "virtual-objects/measure",
+        "virtual-objects/look",
         "virtual-objects/split",
+        "virtual-objects/cut",
         "virtual-objects/reflected",
+        "virtual-objects/shown",
+        "virtual-objects/second-background",
+        "virtual-objects/second-gbuffer",
     ],
     counters: &["searches", "steps", "evaluations", "max-steps", "hidden", "halved", "no-room"],
     new: Some(new),
@@ -73,7 +91,7 @@ struct VirtualObjects {
     environment: MirroredEnvironment,
     gbuffer: GBuffer,
     search: Search,
-    reflected: Reflected,
+    drawing: Drawing,
     /// What is reflected and where it was found; made by the first `prepare`.
     state: Option<State>,
 }
@@ -83,6 +101,9 @@ struct State {
     found: Found,
     /// Where hidden parts are cut off.
     split: Option<Split>,
+    /// What mirrors show of mirrors.
+    second: Option<Second>,
+    refraction: Option<Refraction>,
 }
 
 fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
@@ -93,7 +114,7 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         environment: MirroredEnvironment::new(device, mode)?,
         gbuffer: GBuffer::new(device, texels, rule.format)?,
         search: Search::new(device, &rule, mode, texels)?,
-        reflected: Reflected::new(setup, &rule.defines(mode), rule.residual_px)?,
+        drawing: Drawing::new(device, &rule, mode)?,
         state: None,
         rule,
         mode,
@@ -104,18 +125,11 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
 impl ReflectionMethod for VirtualObjects {
     fn prepare(&mut self, frame: &mut Frame, scene: &GpuScene, want: &Want) -> Result<()> {
         if self.state.is_none() {
-            let device = frame.device().clone();
             let edge = self.rule.edge;
             let lists =
                 frame.cpu("virtual-objects/subdivide", || Lists::new(&scene.scene, edge))?;
-            let source = lists.upload(&device)?;
-            let (rule, clips) = (&self.rule, self.rule.clips);
-            let split = clips.then(|| Split::new(&device, rule, self.mode, &source, self.size));
-            let made = if clips { split::corners_made(self.size) } else { 0 };
-            // Who starts from the pyramid needs no texels of the frame before.
-            let kept = if rule.starts_at_pyramid { 0 } else { want.reflectors.len() };
-            let found = Found::new(&device, source.count, kept, made)?;
-            self.state = Some(State { source, found, split: split.transpose()? });
+            let reflectors = want.reflectors.len();
+            self.state = Some(self.state_for(frame.device(), &scene.scene, &lists, reflectors)?);
         }
         Ok(())
     }
@@ -127,7 +141,14 @@ impl ReflectionMethod for VirtualObjects {
         view: &View,
         record: &mut ReflectionRecord,
     ) -> Result<()> {
-        let Some(State { source, found, split }) = &self.state else { return Ok(()) };
+        let Some(State { source, found, split, second, refraction }) = &self.state else {
+            return Ok(());
+        };
+        let (search, split, second, drawing) = match (view.lobe, refraction) {
+            (Lobe::Reflected, _) => (&self.search, split.as_ref(), second.as_ref(), &self.drawing),
+            (Lobe::Refracted, Some(r)) => (&r.search, Some(&r.split), None, &r.drawing),
+            (Lobe::Refracted, None) => return Ok(()),
+        };
         source.pose(frame, scene, "virtual-objects")?;
         self.environment.fill(frame, scene, "virtual-objects", view, record)?;
         for (place, &object) in view.reflectors.iter().enumerate() {
@@ -141,19 +162,52 @@ impl ReflectionMethod for VirtualObjects {
                 gbuffer,
                 camera: &camera,
                 cut: view.cut,
+                index: scene.scene.material_of(object).glass.map_or(1.0, |glass| glass.index),
+                first: None,
             };
-            self.search.run(frame, scene, source, found, &mirror, record)?;
+            search.run(frame, scene, source, found, &mirror, record)?;
             if let Some(split) = split {
-                let parts = (source, found, &self.search);
-                split.run(frame, view, parts, &mirror, record)?;
+                split.run(frame, view, (source, found, search), &mirror, record)?;
             }
-            self.draw(frame, scene, view, record, object)?;
+            let what = Drawn { source, found, split, reflector: object, first: None };
+            drawing.run(frame, scene, view, record, what)?;
+            if let (Some(second), Some(split)) = (second, split) {
+                let before = Before { source, found, split, mirror: &mirror };
+                second.run(frame, scene, view, &before, record)?;
+            }
         }
         Ok(())
     }
 }
 
 impl VirtualObjects {
+    /// Lists for what so many reflectors reflect.
+    fn state_for(
+        &self,
+        device: &Arc<Device>,
+        scene: &Scene,
+        lists: &Lists,
+        reflectors: usize,
+    ) -> Result<State> {
+        let (rule, mode, size) = (&self.rule, self.mode, self.size);
+        let source = lists.upload(device)?;
+        // Who starts from the pyramid needs no texels of the frame before.
+        let kept = if rule.starts_at_pyramid { 0 } else { reflectors };
+        let made = if rule.clips { split::corners_made(size) } else { 0 };
+        let found = Found::new(device, source.count, kept, made)?;
+        if !rule.clips {
+            return Ok(State { source, found, split: None, second: None, refraction: None });
+        }
+        let edges = Arc::new(Edges::new(device, &lists.indices)?);
+        let parts = (&source, &edges);
+        let split = Split::new(device, rule, mode, parts, size)?;
+        let objects = scene.objects.len();
+        let second = rule.twice.then(|| Second::new(device, rule, mode, size, parts, objects));
+        let refraction = scene.refracts().then(|| Refraction::new(device, rule, mode, size, parts));
+        let (second, refraction) = (second.transpose()?, refraction.transpose()?);
+        Ok(State { source, found, split: Some(split), second, refraction })
+    }
+
     /// What the textures of a reflector are drawn with.
     fn camera(&self, scene: &GpuScene, view: &View, object: ObjectId) -> CameraUniform {
         if !self.rule.fitted {
@@ -161,34 +215,5 @@ impl VirtualObjects {
         }
         let points = scene.scene.closed_points_of(scene.moment(), object);
         view.camera.fitted(&points).unwrap_or_else(|| view.camera.widened(2.0))
-    }
-
-    /// Draw what was found for one reflector into its pixels.
-    fn draw(
-        &self,
-        frame: &mut Frame,
-        scene: &GpuScene,
-        view: &View,
-        record: &ReflectionRecord,
-        reflector: ObjectId,
-    ) -> Result<()> {
-        let Some(State { source, found, split }) = &self.state else { return Ok(()) };
-        let corners = &found.corners;
-        let to = (view, record, reflector);
-        let pass = self.reflected.pass(frame, scene, "virtual-objects", to, source, corners);
-        let pass = match split {
-            None => pass,
-            Some(split) => pass
-                .buffer("owners", &source.owners)
-                .buffer("source_indices", &source.indices)
-                .buffer("drawn", &split.drawn),
-        };
-        pass.draw(|draw| {
-            draw.stencil_reference(Footprint::stencil_of(reflector));
-            match split {
-                Some(split) => split.draw(draw),
-                None => source.draw(draw, reflector),
-            }
-        })
     }
 }

@@ -142,4 +142,12 @@ pub const PARAMS: &[Param] = &[
         needs: None,
         doc: "pixels a fragment may break the law of reflection by before it is flagged; 0: none is",
     },
+    Param {
+        name: "bounces",
+        kind: Kind::Integer { min: 1, max: 2 },
+        defaults: &["1"],
+        needs: Some(("hidden", CUT)),
+        doc: "longest chain of mirrors: 1, or 2, for which every pair of mirrors is searched (section 7, \
+              left open)",
+    },
 ];

@@ -5,6 +5,7 @@ use crate::methods::Values;
 use crate::stages::RecordMode;
 
 /// What searches and draws do, and how far.
+#[derive(Clone)]
 pub struct Rule {
     defines: Vec<(&'static str, u32)>,
     /// Textures show the reflector, not the view.
@@ -25,6 +26,8 @@ pub struct Rule {
     pub split_px: f32,
     pub generations: u32,
     pub residual_px: f32,
+    /// What mirrors show of mirrors is reflected too.
+    pub twice: bool,
     /// Longest edge of diffuse meshes, metres; 0 as modelled.
     pub edge: f32,
 }
@@ -70,8 +73,27 @@ impl Rule {
             split_px: values.f32("split_px"),
             generations: values.u32("generations"),
             residual_px: values.f32("residual_px"),
+            twice: clips && values.u32("bounces") == 2,
             edge: values.f32("subdivide"),
         }
+    }
+
+    /// That of a reflector seen in another one.
+    pub fn second(&self) -> Rule {
+        self.anew("SECOND")
+    }
+
+    /// That of what is seen through a surface.
+    pub fn refracted(&self) -> Rule {
+        self.anew("REFRACTED")
+    }
+
+    /// With one more definition, and nothing remembered of the frame before.
+    fn anew(&self, define: &'static str) -> Rule {
+        let mut rule = self.clone();
+        rule.defines.retain(|&(define, _)| define != "START_PYRAMID");
+        rule.defines.extend([("START_PYRAMID", 1), (define, 1)]);
+        Rule { forgets: true, starts_at_pyramid: true, ..rule }
     }
 
     /// For the method's shaders.

@@ -26,7 +26,7 @@ pub struct SearchUniform {
     threshold: f32,
     reflector: u32,
     top: i32,
-    pad_a: u32,
+    index: f32,
     pad_b: u32,
     pad_c: u32,
 }
@@ -72,6 +72,19 @@ pub struct Mirror<'a> {
     pub camera: &'a CameraUniform,
     /// What the frame before found is void.
     pub cut: bool,
+    /// Refractive index behind its surface over that before it, where what is refracted is sought.
+    pub index: f32,
+    /// Where it is seen, if not by the eye.
+    pub first: Option<First<'a>>,
+}
+
+/// The reflector that another one is seen in.
+#[derive(Clone, Copy)]
+pub struct First<'a> {
+    /// Its points and normals, at the texels of the other's.
+    pub gbuffer: &'a GBuffer,
+    /// Pixels of the view that show the other in it, by object.
+    pub shown_pixels: &'a Buffer,
 }
 
 impl Found {
@@ -149,7 +162,7 @@ impl Search {
             .over(source.count)
     }
 
-    /// Bind what searches of a reflector look at.
+    /// Bind what searches of a reflector look at; who knows some of it needs no more.
     pub fn bind<'f>(&'f self, pass: Pass<'f>, mirror: &Mirror<'f>) -> Pass<'f> {
         let search = SearchUniform {
             total: mirror.vertices,
@@ -160,15 +173,30 @@ impl Search {
             threshold: self.threshold,
             reflector: mirror.object,
             top: self.pyramid.as_ref().map_or(0, Pyramid::top),
+            index: mirror.index,
             ..Zeroable::zeroed()
         };
         let pass = pass
             .storage_struct("search", &search)
+            .optional()
             .uniform("camera", mirror.camera)
+            .optional()
             .sample("mirror_position", &mirror.gbuffer.position)
-            .sample("mirror_normal", &mirror.gbuffer.normal);
-        match &self.pyramid {
+            .optional()
+            .sample("mirror_normal", &mirror.gbuffer.normal)
+            .optional();
+        let pass = match &self.pyramid {
             Some(pyramid) => pass.sample("mirror_cells", &pyramid.cells).optional(),
+            None => pass,
+        };
+        match mirror.first {
+            Some(first) => pass
+                .sample("first_position", &first.gbuffer.position)
+                .optional()
+                .sample("first_normal", &first.gbuffer.normal)
+                .optional()
+                .buffer("shown_pixels", first.shown_pixels)
+                .optional(),
             None => pass,
         }
     }
@@ -199,7 +227,7 @@ mod tests {
     #[rustfmt::skip]
     fn uniforms_are_laid_out_as_their_wgsl_twins() {
         assert_layout!("virtual_objects/search.wgsl", "Search", SearchUniform,
-            total, history, cut, cap, size, threshold, reflector, top, pad_a, pad_b, pad_c);
+            total, history, cut, cap, size, threshold, reflector, top, index, pad_b, pad_c);
         assert_layout!("virtual_objects/start.wgsl", "Middle", MiddleUniform, texel, pad);
     }
 }

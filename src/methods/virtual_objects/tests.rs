@@ -34,7 +34,7 @@ fn values(case: &str) -> Values {
 }
 
 /// The exact reflection point of a reflector about its own origin, of an eye and a point seen in it.
-type Exact = fn(DVec3, DVec3) -> Option<DVec3>;
+type Exact = Box<dyn Fn(DVec3, DVec3) -> Option<DVec3>>;
 
 /// Everything one reflector's search needs.
 struct Bench {
@@ -56,7 +56,8 @@ const VIEW: [u32; 2] = [320, 240];
 impl Bench {
     fn new(case: &str) -> Bench {
         let (scene, reflector) = columns();
-        Bench::of(case, scene, reflector, |eye, v| reflected_point(DVec3::ZERO, 1.0, eye, v))
+        let exact = Box::new(|eye, v| reflected_point(DVec3::ZERO, 1.0, eye, v));
+        Bench::of(case, scene, reflector, exact)
     }
 
     fn of(case: &str, scene: Scene, reflector: ObjectId, exact: Exact) -> Bench {
@@ -111,6 +112,8 @@ impl Bench {
             gbuffer: &self.gbuffer,
             camera: &camera,
             cut,
+            index: 1.0,
+            first: None,
         };
         let Bench { scene, source, found, search, record, .. } = self;
         search.run(&mut frame, scene, source, found, &mirror, record).unwrap();

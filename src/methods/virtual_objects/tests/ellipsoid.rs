@@ -11,6 +11,9 @@ use crate::scene;
 /// Half axes of the reflector of `stress-ellipsoid`, metres.
 const RADII: DVec3 = DVec3::new(1.5, 0.15, 0.5);
 
+/// Of the tables printed, degrees.
+const ROLLS: [u32; 7] = [0, 15, 30, 45, 60, 75, 90];
+
 /// The columns and rows of starts tried.
 const STARTS: [u32; 2] = [24, 12];
 
@@ -115,14 +118,14 @@ struct Misses {
     most: f32,
 }
 
-/// What a case with fitted textures misses by over some rolls, degrees.
-fn misses(case: &str, rolls: &[u32]) -> Misses {
+/// What a case with fitted textures misses by on an ellipsoid of half axes `radii` over some rolls, degrees.
+fn misses(case: &str, radii: DVec3, rolls: &[u32]) -> Misses {
     let mut scene = scene::load("stress-ellipsoid").unwrap();
     let reflector = scene.reflectors()[0];
     let mesh = scene.objects[reflector as usize].mesh;
     // So fine that its facets cannot be told from it.
-    scene.meshes[mesh] = shapes::ellipsoid(RADII.as_vec3(), 512, 512);
-    let exact = |eye, seen| reflected_point(RADII, eye, seen);
+    scene.meshes[mesh] = shapes::ellipsoid(radii.as_vec3(), 512, 512);
+    let exact = Box::new(move |eye, seen| reflected_point(radii, eye, seen));
     let mut bench = Bench::of(case, scene, reflector, exact);
     let mut all = Vec::new();
     for &roll in rolls {
@@ -147,7 +150,8 @@ fn cases(texels: u32, precision: &str) -> [String; 3] {
 
 #[test]
 fn on_a_rolled_ellipsoid_four_neighbours_stall_and_the_revised_search_does_not() {
-    let [crosshair, eight, revised] = cases(256, "fp32").map(|case| misses(&case, &[20, 45, 70]));
+    let [crosshair, eight, revised] =
+        cases(256, "fp32").map(|case| misses(&case, RADII, &[20, 45, 70]));
     assert!(crosshair.mean > 20.0 && crosshair.most > 80.0, "crosshair: {crosshair:?}");
     // A third of a texel is what whole texels cost.
     assert!(eight.mean < 1.0 && eight.most < 12.0, "eight: {eight:?}");
@@ -157,13 +161,12 @@ fn on_a_rolled_ellipsoid_four_neighbours_stall_and_the_revised_search_does_not()
 #[test]
 #[ignore = "minutes: prints the table of paper-figures/estalella-2006/README.md"]
 fn the_stall_grows_with_the_textures() {
-    let rolls = [0, 15, 30, 45, 60, 75, 90];
     let mut stalls = Vec::new();
     for (texels, precision) in
         [(256, "fp32"), (512, "fp32"), (1024, "fp32"), (256, "fp16"), (1024, "fp16")]
     {
         let [crosshair, eight, revised] = cases(texels, precision).map(|case| {
-            let misses = misses(&case, &rolls);
+            let misses = misses(&case, RADII, &ROLLS);
             println!("{case}: {misses:.3?}");
             misses
         });
@@ -171,6 +174,23 @@ fn the_stall_grows_with_the_textures() {
             assert!(eight.mean < 1.0 && revised.mean < 0.1, "{eight:?} {revised:?}");
             stalls.push(crosshair.mean);
         }
+    }
+    assert!(stalls.windows(2).all(|pair| pair[1] > 1.1 * pair[0]), "{stalls:?}");
+}
+
+#[test]
+#[ignore = "minutes: prints the table of paper-figures/estalella-2006/README.md"]
+fn the_stall_grows_with_the_aspect() {
+    let mut stalls = Vec::new();
+    for aspect in [1.0, 2.0, 3.0, 5.0, 10.0] {
+        let radii = DVec3::new(RADII.x, RADII.x / aspect, RADII.z);
+        let [crosshair, eight, revised] = cases(256, "fp32").map(|case| {
+            let misses = misses(&case, radii, &ROLLS);
+            println!("{aspect}, {case}: {misses:.3?}");
+            misses
+        });
+        assert!(eight.mean < 1.0 && revised.mean < 0.1, "{eight:?} {revised:?}");
+        stalls.push(crosshair.mean);
     }
     assert!(stalls.windows(2).all(|pair| pair[1] > 1.1 * pair[0]), "{stalls:?}");
 }
