@@ -1,8 +1,8 @@
 """Estalella et al. 2006, section 7: second bounces, which the paper leaves open.
 
 To be seen: Two mirror spheres among columns, from behind: what each shows of the other is black with one bounce, and
-reflects with two; at the right ray traced. Below, where the two meet. The other panels are of nine mirror
-spheres and two dishes. Third bounces stay black in the method, and are not in the truth.
+reflects with two; at the right ray traced, to four bounces. Below, where the two meet, and part of a hall of nine
+mirror spheres and two dishes. What is seen by a third bounce stays black.
 
 Claim: None; second bounces are future work there.
 """

@@ -26,6 +26,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let point = world_position(pose, vertex.position);
     let normal = normalize(world_direction(pose, vertex.normal));
     let incident = arriving(camera, point);
-    let direction = select(reflect(incident, normal), incident, dot(normal, incident) >= 0.0);
-    rays[id.x] = Ray(point, normal, direction);
+    let away = dot(normal, incident) >= 0.0;
+    let direction = select(reflect(incident, normal), incident, away);
+    rays[id.x] = Ray(point, u32(away), normal, direction);
 }

@@ -100,14 +100,11 @@ fn plane_for(v: vec3<f32>) -> Plane {
     let away = distance(v, spheres.centre);
     let direction = (v - spheres.centre) / max(away, 1e-9);
 #ifdef CELL_WALK
-    let number = number_at(0u, map_place(spheres, direction));
-    var out: Plane;
-    if number != 0u {
-        let found = walk(number - 1u, v, search.cap);
-        steps = found.steps;
-        out = plane_in(found.triangle, found.weights);
-    }
-    return out;
+    // Any triangle will do where the map has none.
+    let number = max(number_at(0u, map_place(spheres, direction)), 1u);
+    let found = walk(number - 1u, v, search.cap);
+    steps = found.steps;
+    return plane_in(found.triangle, found.weights);
 #else
     let near = plane_on_sphere(0u, direction);
     if spheres.layers == 1u {

@@ -21,6 +21,8 @@ struct Spheres {
 struct Ray {
     // World; direction and normal of unit length.
     point: vec3<f32>,
+    // 1 where the surface faces away from the eye.
+    away: u32,
     normal: vec3<f32>,
     direction: vec3<f32>,
 }

@@ -14,6 +14,9 @@
 #import virtual_objects::reflector::texel_of
 #endif
 #import virtual_objects::walk::{best_at_top, descent}
+#ifdef REFLECTOR_CUBE
+#import virtual_objects::cube_search::cube_point
+#endif
 
 // Cosine between normal and eye at a closed reflector's rim, at most.
 const RIM: f32 = 0.25;
@@ -33,6 +36,18 @@ fn is_hidden(v: vec3<f32>) -> bool {
     return p.w == 1.0 && is_out_of_sight(v, p.xyz, normal_at(texel));
 }
 
+#ifdef REFLECTOR_CUBE
+// In cube maps every search is the same, wherever its point is likely to be.
+fn point_near(place: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
+    let out = cube_point(v);
+    steps += out.steps;
+    return out;
+}
+
+fn point_of(v: vec3<f32>) -> ReflectionPoint {
+    return point_near(vec2(0.0), v);
+}
+#else
 // The reflection point near a place, as far as Newton's steps reach; where they fail, it is not found.
 fn point_near(place: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
     var out: ReflectionPoint;
@@ -76,6 +91,7 @@ fn point_of(v: vec3<f32>) -> ReflectionPoint {
 #endif
     return ReflectionPoint(place, p, n, 0u, found);
 }
+#endif
 
 // The eye sees the reflector's rim there.
 fn grazes(place: vec2<f32>, p: vec3<f32>, n: vec3<f32>) -> bool {

@@ -76,31 +76,38 @@ fn patch_at(place: vec2<f32>) -> Patch {
             return out;
         }
     }
+    let right = corner + vec2(1, 0);
+    let below = corner + vec2(0, 1);
+    let across = corner + vec2(1, 1);
     let f = g - vec2<f32>(corner);
-    let p_00 = point_at(corner).xyz;
-    let p_10 = point_at(corner + vec2(1, 0)).xyz;
-    let p_01 = point_at(corner + vec2(0, 1)).xyz;
-    let p_11 = point_at(corner + vec2(1, 1)).xyz;
-    let n_00 = normal_at(corner);
-    let n_10 = normal_at(corner + vec2(1, 0));
-    let n_01 = normal_at(corner + vec2(0, 1));
-    let n_11 = normal_at(corner + vec2(1, 1));
-    out.p_x = mix(p_10 - p_00, p_11 - p_01, f.y);
-    out.p_y = mix(p_01 - p_00, p_11 - p_10, f.x);
-    out.p = mix(p_00, p_01, f.y) + f.x * out.p_x;
-    // Of unit length up to the square of what they turn by in a texel; their slopes need no more.
-    out.n_x = mix(n_10 - n_00, n_11 - n_01, f.y);
-    out.n_y = mix(n_01 - n_00, n_11 - n_10, f.x);
-    out.n = normalize(mix(n_00, n_01, f.y) + f.x * out.n_x);
+    out = patch_between(
+        array(point_at(corner).xyz, point_at(right).xyz, point_at(below).xyz, point_at(across).xyz),
+        array(normal_at(corner), normal_at(right), normal_at(below), normal_at(across)),
+        f,
+    );
 #ifdef SECOND
     let first_00 = first_at(corner).xyz;
-    let first_10 = first_at(corner + vec2(1, 0)).xyz;
-    let first_01 = first_at(corner + vec2(0, 1)).xyz;
-    let first_11 = first_at(corner + vec2(1, 1)).xyz;
+    let first_10 = first_at(right).xyz;
+    let first_01 = first_at(below).xyz;
+    let first_11 = first_at(across).xyz;
     out.first_x = mix(first_10 - first_00, first_11 - first_01, f.y);
     out.first_y = mix(first_01 - first_00, first_11 - first_10, f.x);
     out.first = mix(first_00, first_01, f.y) + f.x * out.first_x;
 #endif
+    return out;
+}
+
+// The patch at a place between four texel centres, row by row.
+fn patch_between(p: array<vec3<f32>, 4>, n: array<vec3<f32>, 4>, f: vec2<f32>) -> Patch {
+    var out: Patch;
+    out.whole = true;
+    out.p_x = mix(p[1] - p[0], p[3] - p[2], f.y);
+    out.p_y = mix(p[2] - p[0], p[3] - p[1], f.x);
+    out.p = mix(p[0], p[2], f.y) + f.x * out.p_x;
+    // Of unit length up to the square of what they turn by in a texel; their slopes need no more.
+    out.n_x = mix(n[1] - n[0], n[3] - n[2], f.y);
+    out.n_y = mix(n[2] - n[0], n[3] - n[1], f.x);
+    out.n = normalize(mix(n[0], n[2], f.y) + f.x * out.n_x);
     return out;
 }
 
@@ -144,6 +151,28 @@ fn step_towards(law: vec3<f32>, j_x: vec3<f32>, j_y: vec3<f32>) -> vec2<f32> {
     return vec2(b * g_y - (c + damping) * g_x, b * g_x - (a + damping) * g_y) / determinant;
 }
 
+// Half way between the directions to where it is seen from and to the vertex, not of unit length, and its
+// slopes a texel.
+struct HalfWay {
+    h: vec3<f32>,
+    h_x: vec3<f32>,
+    h_y: vec3<f32>,
+}
+
+fn half_way(at: Patch, v: vec3<f32>) -> HalfWay {
+    let sight = sight_of(at);
+    let away = max(distance(v, at.p), 1e-9);
+    let towards_v = (v - at.p) / away;
+#ifdef REFRACTED
+    let index = search.index;
+#else
+    let index = 1.0;
+#endif
+    let h_x = sight.x + index * turn(towards_v, away, at.p_x);
+    let h_y = sight.y + index * turn(towards_v, away, at.p_y);
+    return HalfWay(sight.towards + index * towards_v, h_x, h_y);
+}
+
 // From a place to the reflection point of `v`.
 fn newton(begin: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
     var out: ReflectionPoint;
@@ -159,20 +188,11 @@ fn newton(begin: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
             continue;
         }
         evaluations += 1u;
-        let sight = sight_of(at);
-        let away = max(distance(v, at.p), 1e-9);
-        let towards_v = (v - at.p) / away;
-#ifdef REFRACTED
-        let index = search.index;
-#else
-        let index = 1.0;
-#endif
-        let h = sight.towards + index * towards_v;
+        let half = half_way(at, v);
+        let h = half.h;
         let law = cross(at.n, h);
-        let h_x = sight.x + index * turn(towards_v, away, at.p_x);
-        let h_y = sight.y + index * turn(towards_v, away, at.p_y);
-        let j_x = cross(at.n_x, h) + cross(at.n, h_x);
-        let j_y = cross(at.n_y, h) + cross(at.n, h_y);
+        let j_x = cross(at.n_x, h) + cross(at.n, half.h_x);
+        let j_y = cross(at.n_y, h) + cross(at.n, half.h_y);
         out.place = place;
         out.position = at.p;
         out.normal = at.n;

@@ -11,8 +11,14 @@
 #ifdef SECOND
 #import virtual_objects::reflector::shown_pixels
 #endif
-#ifdef PYRAMID
-#import virtual_objects::find::{corner_of, hidden_corner, is_hidden, point_of, steps}
+#ifdef HIDDEN_CLIP
+#import virtual_objects::find::{corner_of, hidden_corner, is_hidden}
+#endif
+#ifdef START_PYRAMID
+#import virtual_objects::find::{point_of, steps}
+#endif
+#ifdef REFLECTOR_CUBE
+#import virtual_objects::cube_search::{cube_point, direction_of, fixed_point}
 #endif
 
 // Whose vertex each is.
@@ -23,6 +29,16 @@
 @group(0) @binding(5) var<storage, read_write> texels: array<u32>;
 @group(0) @binding(6) var<storage, read_write> corners: array<Corner>;
 
+#ifdef REFLECTOR_CUBE
+fn reflection_point(index: u32, v: vec3<f32>) -> ReflectionPoint {
+    return cube_point(v);
+}
+
+// That of the vertex reflected into `v`, from the point found for `v`.
+fn inverse_point(found: ReflectionPoint, v: vec3<f32>) -> ReflectionPoint {
+    return fixed_point(direction_of(found.position), v, true);
+}
+#else
 #ifndef START_PYRAMID
 // Where to begin: last frame's texel, unless there is none or the reflector has left it.
 fn first_texel(index: u32) -> u32 {
@@ -42,6 +58,10 @@ fn walked_to(begin: vec2<i32>, v: vec3<f32>, inverse: bool) -> ReflectionPoint {
     let end = walk(begin, 0, v, inverse);
     let place = vec2<f32>(end.cell) + 0.5;
     return ReflectionPoint(place, point_at(end.cell).xyz, normal_at(end.cell), end.steps, true);
+}
+
+fn inverse_point(found: ReflectionPoint, v: vec3<f32>) -> ReflectionPoint {
+    return walked_to(vec2<i32>(found.place), v, true);
 }
 
 // The reflection point of a vertex; `found` is false where no texel shows the reflector.
@@ -69,6 +89,7 @@ fn reflection_point(index: u32, v: vec3<f32>) -> ReflectionPoint {
 #endif
     return out;
 }
+#endif
 
 #ifndef HIDDEN_CLIP
 // V' as published: what lies behind the plane found is hidden, and mirrored all the same.
@@ -86,7 +107,7 @@ fn published_corner(v: vec3<f32>, found: ptr<function, ReflectionPoint>) -> Corn
     var p = point.position;
     var n = point.normal;
 #ifdef HIDDEN_INVERSE
-    let again = walked_to(vec2<i32>(point.place), v, true);
+    let again = inverse_point(point, v);
     (*found).steps += again.steps;
     p = again.position;
     n = again.normal;

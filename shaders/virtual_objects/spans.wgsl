@@ -123,12 +123,12 @@ fn pixel_of(image: vec3<f32>) -> vec2<f32> {
     return (0.5 * clip.xy / max(clip.w, 1e-6) + 0.5) * vec2<f32>(split.size);
 }
 
-// Whether an edge is drawn beside the view, as far from it as that is wide or high, or further.
+// Whether an edge is drawn beside the view, a quarter of its width or height from it, or further.
 fn is_beside_view(a: Corner, b: Corner) -> bool {
     let one = view_camera.clip_from_world * vec4(a.image, 1.0);
     let other = view_camera.clip_from_world * vec4(b.image, 1.0);
-    let beyond = (one.xy > vec2(3.0 * one.w)) & (other.xy > vec2(3.0 * other.w));
-    let before = (one.xy < vec2(-3.0 * one.w)) & (other.xy < vec2(-3.0 * other.w));
+    let beyond = (one.xy > vec2(1.5 * one.w)) & (other.xy > vec2(1.5 * other.w));
+    let before = (one.xy < vec2(-1.5 * one.w)) & (other.xy < vec2(-1.5 * other.w));
     return any(beyond | before);
 }
 

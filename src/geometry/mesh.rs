@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// An indexed triangle mesh with one normal and one texture coordinate a vertex.
 ///
@@ -31,6 +31,18 @@ impl Mesh {
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let (&first, rest) = self.positions.split_first()?;
         Some(rest.iter().fold((first, first), |(low, high), &p| (low.min(p), high.max(p))))
+    }
+
+    /// The centroid of its surface; the origin for a mesh without area.
+    pub fn centroid(&self) -> Vec3 {
+        let parts = (0..self.triangles.len()).map(|triangle| {
+            let [a, b, c] = self.corners(triangle).map(|p| p.as_dvec3());
+            let area = (b - a).cross(c - a).length();
+            (area, area * (a + b + c) / 3.0)
+        });
+        let (area, moment) =
+            parts.fold((0.0, DVec3::ZERO), |(area, moment), (a, m)| (area + a, moment + m));
+        if area > 0.0 { (moment / area).as_vec3() } else { Vec3::ZERO }
     }
 
     /// Whether it has an inside: every edge borders as many triangles in one direction as in the
@@ -147,6 +159,19 @@ pub(crate) fn is_flat(a: Vec3, b: Vec3, c: Vec3) -> bool {
 mod tests {
     use super::*;
     use crate::geometry::shapes::{Sweep, cuboid, cylinder, plane, sphere, torus};
+
+    #[test]
+    fn a_centroid_is_of_the_surface_not_of_the_vertices() {
+        let mut bowl = sphere(1.0, 64, 64);
+        bowl.triangles.retain(|t| t.iter().all(|&i| bowl.positions[i as usize].y < 1e-6));
+        // Of a half sphere at half its height (Archimedes), though its vertices crowd at the pole.
+        assert!(
+            bowl.centroid().abs_diff_eq(Vec3::new(0.0, -0.5, 0.0), 2e-3),
+            "{}",
+            bowl.centroid()
+        );
+        assert_eq!(Mesh::default().centroid(), Vec3::ZERO);
+    }
 
     #[test]
     fn what_has_an_inside_is_closed() {

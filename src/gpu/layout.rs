@@ -8,7 +8,8 @@ use super::Shaders;
 /// Where anything differs: this is for tests.
 pub fn check(file: &str, structure: &str, size: usize, members: &[(&str, usize)]) {
     let mut shaders = Shaders::new(None).unwrap();
-    let module = shaders.module(file, &[("RECORD_FULL", 1), ("INDEX_SURFACE", 1)]).unwrap();
+    let defines = [("RECORD_FULL", 1), ("INDEX_SURFACE", 1), ("REFLECTOR_CUBE", 1)];
+    let module = shaders.module(file, &defines).unwrap();
     let named = |name: &Option<String>| {
         name.as_deref().is_some_and(|n| n.split("X_naga_oil").next() == Some(structure))
     };

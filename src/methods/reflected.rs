@@ -10,7 +10,7 @@ use crate::gpu::{
     Attachments, Buffer, Defines, Depth, Device, Frame, GraphicsPipeline, Load, Pass, Stencil,
 };
 use crate::scene::ObjectId;
-use crate::stages::{GpuScene, RecordMode, ReflectionRecord, View};
+use crate::stages::{Footprint, GpuScene, RecordMode, ReflectionRecord, View};
 
 /// WGSL `Reflected` of `shaders/virtual_objects/reflected.wgsl`.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -89,6 +89,23 @@ impl Reflected {
             .buffer("first_triangles", &source.first_triangles)
             .optional()
             .depth_stencil(&view.footprint.depth_stencil, Load::Clear([0.0; 4]), Load::Keep)
+    }
+
+    /// Draw all of the source but `reflector` as that shows it, into its own pixels.
+    pub fn draw(
+        &self,
+        frame: &mut Frame,
+        scene: &GpuScene,
+        name: &str,
+        to: (&View, &ReflectionRecord),
+        reflector: ObjectId,
+        (source, corners): (&Source, &Buffer),
+    ) -> Result<()> {
+        let mirrors = (reflector, reflector);
+        self.pass(frame, scene, name, to, mirrors, (source, corners)).draw(|draw| {
+            draw.stencil_reference(Footprint::stencil_of(reflector));
+            source.draw(draw, reflector);
+        })
     }
 }
 

@@ -66,6 +66,12 @@ impl Scene {
         mesh.positions.iter().map(|&p| pose.transform_point3(p)).collect()
     }
 
+    /// The centroid of the surface whose points [`Scene::closed_points_of`] gives, in object space.
+    pub fn closed_centroid_of(&self, moment: &Moment, object: ObjectId) -> Vec3 {
+        let own = &self.objects[object as usize];
+        self.shape_at(moment, own.closed.unwrap_or(own.mesh)).centroid()
+    }
+
     /// The world box of one object at a moment.
     pub fn object_bounds(&self, moment: &Moment, object: ObjectId) -> (Vec3, Vec3) {
         let pose = moment.poses[object as usize];

@@ -29,7 +29,7 @@ pub struct CubeUniform {
 }
 
 impl CubeUniform {
-    pub(super) fn new(centre: Vec3) -> CubeUniform {
+    pub fn new(centre: Vec3) -> CubeUniform {
         CubeUniform {
             clip_from_world: std::array::from_fn(|face| {
                 face_matrix(face as u32, centre).to_cols_array_2d()
@@ -37,6 +37,17 @@ impl CubeUniform {
             centre: centre.to_array(),
             near: NEAR,
         }
+    }
+
+    /// With faces of `size` texels a side wider by half a texel all round: the outermost texels' centres
+    /// are then on the cube's edges, where faces share them.
+    pub fn with_edges(mut self, size: u32) -> CubeUniform {
+        let share = (size - 1) as f32 / size as f32;
+        for column in self.clip_from_world.iter_mut().flatten() {
+            column[0] *= share;
+            column[1] *= share;
+        }
+        self
     }
 }
 

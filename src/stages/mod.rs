@@ -20,7 +20,7 @@ mod scene_structure;
 mod scene_tree;
 mod view;
 
-pub use capture::{Capture, CaptureStage};
+pub use capture::{Capture, CaptureStage, CubeUniform};
 pub use composite::Composite;
 pub use depth_pyramid::DepthPyramid;
 pub use direct_view::DirectView;

@@ -235,6 +235,11 @@ impl GpuScene {
         }
     }
 
+    /// Rows of world from an object's own space, this frame.
+    pub fn rows_of(&self, object: ObjectId) -> [[f32; 4]; 3] {
+        rows(&self.moment.poses[object as usize])
+    }
+
     /// First index and index count of an object.
     fn range(&self, object: ObjectId) -> (u32, u32) {
         self.ranges[self.scene.objects[object as usize].mesh]

@@ -24,7 +24,7 @@ use super::source::{Lists, Source};
 use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
 use crate::error::Result;
 use crate::gpu::{Buffer, Frame};
-use crate::stages::{Footprint, GpuScene, MirroredEnvironment, ReflectionRecord, View};
+use crate::stages::{GpuScene, MirroredEnvironment, ReflectionRecord, View};
 use map::Map;
 use reflector::Reflector;
 use search::Search;
@@ -134,12 +134,8 @@ impl ReflectionMethod for ExplosionMap {
             let spheres = self.map.fill(frame, scene, &view.camera, reflector)?;
             let parts = (&self.map, &spheres, reflector);
             self.search.run(frame, scene, (&view.camera, record), parts, source, corners)?;
-            let (name, to, mirrors) = ("explosion-map", (view, record), (object, object));
-            let pass = self.reflected.pass(frame, scene, name, to, mirrors, (source, corners));
-            pass.draw(|draw| {
-                draw.stencil_reference(Footprint::stencil_of(object));
-                source.draw(draw, object);
-            })?;
+            let (name, to) = ("explosion-map", (view, record));
+            self.reflected.draw(frame, scene, name, to, object, (source, corners))?;
         }
         Ok(())
     }

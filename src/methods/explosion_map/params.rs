@@ -25,21 +25,21 @@ pub const PARAMS: &[Param] = &[
         kind: Kind::Real { min: 1.0, max: 1e4 },
         defaults: &["1.5", "2"],
         needs: None,
-        doc: "of the sphere, or of the near one, in radii of the reflector about the middle of its box (untold)",
+        doc: "of the sphere, or of the near one, in radii of the reflector about the middle of its box (unstated)",
     },
     Param {
         name: "far",
         kind: Kind::Real { min: 0.0, max: 1e4 },
         defaults: &["0"],
         needs: TWO,
-        doc: "radius of the far sphere, counted as `radius`; 0: it holds the scene (untold)",
+        doc: "radius of the far sphere, counted as `radius`; 0: it holds the scene (unstated)",
     },
     Param {
         name: "blend",
         kind: Kind::Choice(&["linear", "inverse"]),
         defaults: &["inverse"],
         needs: TWO,
-        doc: "between two spheres by distance from their centre, or by its inverse, which errs less (untold)",
+        doc: "between two spheres by distance from their centre, or by its inverse, which errs less (unstated)",
     },
     Param {
         name: "size",
@@ -68,7 +68,7 @@ pub const PARAMS: &[Param] = &[
         defaults: &["cut"],
         needs: None,
         doc: "what the reflector hides: cut off by the pixel, or left out with all triangles that reach into it \
-              (untold)",
+              (unstated)",
     },
     Param {
         name: "subdivide",

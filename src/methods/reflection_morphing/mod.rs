@@ -23,7 +23,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Projection;
 use crate::gpu::Frame;
 use crate::scene::ObjectId;
-use crate::stages::{Footprint, GpuScene, MirroredEnvironment, ReflectionRecord, View};
+use crate::stages::{GpuScene, MirroredEnvironment, ReflectionRecord, View};
 use crate::truth::Cache;
 
 use super::reflected::Reflected;
@@ -148,19 +148,8 @@ impl ReflectionMethod for ReflectionMorphing {
             let mirror = morph::Mirror { object, place, rank: rank_of(scene, object) };
             self.morph.look_up(frame, scene, (source, vertices), &self.nodes, &mirror, record)?;
             self.morph.run(frame, scene, (source, vertices), &corners, &mirror, (view, record))?;
-            let (to, drawn) = ((view, &*record), (source, &vertices.corners));
-            let pass = self.reflected.pass(
-                frame,
-                scene,
-                "reflection-morphing",
-                to,
-                (object, object),
-                drawn,
-            );
-            pass.draw(|draw| {
-                draw.stencil_reference(Footprint::stencil_of(object));
-                source.draw(draw, object);
-            })?;
+            let (name, to) = ("reflection-morphing", (view, &*record));
+            self.reflected.draw(frame, scene, name, to, object, (source, &vertices.corners))?;
         }
         self.nodes.slots.iter_mut().flatten().for_each(|node| node.is_asked = true);
         Ok(())

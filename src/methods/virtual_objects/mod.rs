@@ -15,7 +15,11 @@
 //!
 //! `bounces=2`: mirrors seen in mirrors reflect too, see `second`. Glass is looked through by its first surface,
 //! see `refraction`.
+//!
+//! Reflectors may be searched in cube maps instead, as the older methods do (`reflector_map=cube`); what the eye
+//! sees of them is then drawn only for `hidden=clip`, which cuts along it.
 
+mod cube;
 mod draw;
 mod edges;
 mod params;
@@ -39,6 +43,7 @@ use crate::stages::{
 
 use super::source::{self, Lists, Source};
 use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
+use cube::CubeMaps;
 use draw::{Drawing, Drawn};
 use edges::Edges;
 use refraction::Refraction;
@@ -59,9 +64,10 @@ pub const INFO: MethodInfo = MethodInfo {
     params: params::PARAMS,
     limits: "one reflection a vertex and reflector, so convex reflectors; one bounce, or two; what glass \
              lets through by its first surface alone, and not @published, which is straight between \
-             vertices",
+             vertices; reflector_map=cube: reflectors star-shaped about their centroid",
     passes: &[
         "virtual-objects/subdivide",
+        "virtual-objects/cube",
         "virtual-objects/vertices",
         "footprint/clear-list",
         "footprint/list",
@@ -90,6 +96,8 @@ struct VirtualObjects {
     size: [u32; 2],
     environment: MirroredEnvironment,
     gbuffer: GBuffer,
+    /// Where these are searched.
+    cubes: Option<CubeMaps>,
     search: Search,
     drawing: Drawing,
     /// What is reflected and where it was found; made by the first `prepare`.
@@ -110,9 +118,11 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     let &Setup { device, mode, size, .. } = setup;
     let rule = Rule::new(setup.values);
     let texels = rule.texture_size(size);
+    let cubes = rule.cube.map(|cube| CubeMaps::new(device, cube, rule.format));
     Ok(Box::new(VirtualObjects {
         environment: MirroredEnvironment::new(device, mode)?,
         gbuffer: GBuffer::new(device, texels, rule.format)?,
+        cubes: cubes.transpose()?,
         search: Search::new(device, &rule, mode, texels)?,
         drawing: Drawing::new(device, &rule, mode)?,
         state: None,
@@ -130,6 +140,11 @@ impl ReflectionMethod for VirtualObjects {
                 frame.cpu("virtual-objects/subdivide", || Lists::new(&scene.scene, edge))?;
             let reflectors = want.reflectors.len();
             self.state = Some(self.state_for(frame.device(), &scene.scene, &lists, reflectors)?);
+            if let Some(cubes) = &mut self.cubes {
+                for &object in want.reflectors {
+                    cubes.draw(frame, scene, object)?;
+                }
+            }
         }
         Ok(())
     }
@@ -154,12 +169,18 @@ impl ReflectionMethod for VirtualObjects {
         for (place, &object) in view.reflectors.iter().enumerate() {
             let camera = self.camera(scene, view, object);
             let gbuffer = &self.gbuffer;
-            gbuffer.draw(frame, scene, "virtual-objects", object, &camera)?;
+            if let Some(cubes) = &mut self.cubes {
+                cubes.draw(frame, scene, object)?;
+            }
+            if self.cubes.is_none() || self.rule.clips {
+                gbuffer.draw(frame, scene, "virtual-objects", object, &camera)?;
+            }
             let mirror = Mirror {
                 object,
                 place,
                 vertices: source.count,
                 gbuffer,
+                cube: self.cubes.as_ref().and_then(|cubes| cubes.of(scene, object)),
                 camera: &camera,
                 cut: view.cut,
                 index: scene.scene.material_of(object).glass.map_or(1.0, |glass| glass.index),
@@ -191,8 +212,8 @@ impl VirtualObjects {
     ) -> Result<State> {
         let (rule, mode, size) = (&self.rule, self.mode, self.size);
         let source = lists.upload(device)?;
-        // Who starts from the pyramid needs no texels of the frame before.
-        let kept = if rule.starts_at_pyramid { 0 } else { reflectors };
+        // Who starts from the pyramid, or from directions, needs no texels of the frame before.
+        let kept = if rule.starts_at_pyramid || rule.cube.is_some() { 0 } else { reflectors };
         let made = if rule.clips { split::corners_made(size) } else { 0 };
         let found = Found::new(device, source.count, kept, made)?;
         if !rule.clips {

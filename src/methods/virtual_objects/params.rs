@@ -5,8 +5,47 @@ use crate::methods::{Kind, Param};
 /// Choices of `hidden` that reflect hidden vertices too.
 const UNCUT: &[&str] = &["half-space", "inverse"];
 const CUT: &[&str] = &["clip"];
+const SCREEN: Option<(&str, &[&str])> = Some(("reflector_map", &["screen"]));
+const CUBE: Option<(&str, &[&str])> = Some(("reflector_map", &["cube"]));
 
 pub const PARAMS: &[Param] = &[
+    Param {
+        name: "reflector_map",
+        kind: Kind::Choice(&["screen", "cube"]),
+        defaults: &["screen"],
+        needs: None,
+        doc: "where the reflector is searched: in textures of what the eye sees of it, or in two cube maps about \
+              its centroid, for reflectors all of which is seen from there (Estalella et al. 2005)",
+    },
+    Param {
+        name: "cube_size",
+        kind: Kind::Integer { min: 16, max: 4096 },
+        defaults: &["256"],
+        needs: CUBE,
+        doc: "texels along a side of the reflector's cube maps (unstated)",
+    },
+    Param {
+        name: "search",
+        kind: Kind::Choice(&["fixed-point", "newton"]),
+        defaults: &["fixed-point", "newton"],
+        needs: CUBE,
+        doc: "steps along B - N, as we guess the search of 2005 to be; or Gauss-Newton steps on it, in the \
+              manner of Roger & Holzschuch 2006",
+    },
+    Param {
+        name: "step",
+        kind: Kind::Real { min: 0.01, max: 4.0 },
+        defaults: &["1"],
+        needs: Some(("search", &["fixed-point"])),
+        doc: "how much of B - N is added to the direction searched in (unknown to us)",
+    },
+    Param {
+        name: "most_steps",
+        kind: Kind::Integer { min: 1, max: 4096 },
+        defaults: &["64"],
+        needs: CUBE,
+        doc: "most steps of a search of the cube maps (unknown to us)",
+    },
     Param {
         name: "frustum",
         kind: Kind::Choice(&["widened", "fitted"]),
@@ -40,28 +79,28 @@ pub const PARAMS: &[Param] = &[
         name: "objective",
         kind: Kind::Choice(&["dot", "cross"]),
         defaults: &["dot", "cross"],
-        needs: None,
+        needs: SCREEN,
         doc: "what a walk seeks: the highest N.B (section 4), or the least |N x B|, which is not flat there",
     },
     Param {
         name: "pattern",
         kind: Kind::Choice(&["crosshair", "crosshair-diagonals", "eight"]),
         defaults: &["crosshair", "eight"],
-        needs: None,
+        needs: SCREEN,
         doc: "neighbours looked at: four; the diagonals where none of the four is better; all at once",
     },
     Param {
         name: "start",
         kind: Kind::Choice(&["previous", "centre", "pyramid"]),
         defaults: &["previous", "pyramid"],
-        needs: None,
+        needs: SCREEN,
         doc: "start from the texel found in the frame before (5.3), from the centre, or coarse to fine",
     },
     Param {
         name: "point",
         kind: Kind::Choice(&["texel", "newton"]),
         defaults: &["texel", "newton"],
-        needs: None,
+        needs: SCREEN,
         doc: "the reflection point: the best texel's, or between texels by Gauss-Newton steps",
     },
     Param {
@@ -75,7 +114,7 @@ pub const PARAMS: &[Param] = &[
         name: "cap",
         kind: Kind::Integer { min: 1, max: 65535 },
         defaults: &["65535"],
-        needs: None,
+        needs: SCREEN,
         doc: "most neighbourhoods looked at in one walk; the paper has no limit, as the largest",
     },
     Param {

@@ -1,5 +1,6 @@
 //! A case's parameters, read once.
 
+use super::cube::CubeRule;
 use crate::gpu::Format;
 use crate::methods::Values;
 use crate::stages::RecordMode;
@@ -14,6 +15,8 @@ pub struct Rule {
     texture: Option<u32>,
     pub widening: f32,
     pub format: Format,
+    /// Searches look at cube maps, not at what the eye sees.
+    pub cube: Option<CubeRule>,
     /// Every frame starts anew.
     pub forgets: bool,
     /// Searches go from coarse to fine, or hidden parts are cut: a pyramid is needed.
@@ -34,10 +37,11 @@ pub struct Rule {
 
 /// Shader definitions that values stand for.
 const DEFINES: &[(&str, &str, &str)] = &[
+    ("reflector_map", "cube", "REFLECTOR_CUBE"),
+    ("search", "newton", "CUBE_NEWTON"),
     ("objective", "cross", "OBJECTIVE_CROSS"),
     ("pattern", "crosshair-diagonals", "PATTERN_DIAGONALS"),
     ("pattern", "eight", "PATTERN_EIGHT"),
-    ("start", "pyramid", "START_PYRAMID"),
     ("point", "newton", "POINT_NEWTON"),
     ("image", "push", "IMAGE_PUSH"),
     ("hidden", "inverse", "HIDDEN_INVERSE"),
@@ -52,11 +56,12 @@ impl Rule {
         let chosen = DEFINES.iter().filter(|(name, value, _)| values.is(name, value));
         let mut defines: Vec<_> = chosen.map(|&(_, _, define)| (define, 1)).collect();
         let clips = values.is("hidden", "clip");
-        let starts_at_pyramid = values.is("start", "pyramid");
-        let pyramid = clips || starts_at_pyramid;
-        if pyramid {
-            defines.push(("PYRAMID", 1));
-        }
+        let cube = CubeRule::new(values);
+        let starts_at_pyramid = cube.is_none() && values.is("start", "pyramid");
+        let pyramid = cube.is_none() && (clips || starts_at_pyramid);
+        let more = [("PYRAMID", pyramid), ("START_PYRAMID", starts_at_pyramid)];
+        defines
+            .extend(more.into_iter().filter(|&(_, wanted)| wanted).map(|(define, _)| (define, 1)));
         let fp16 = values.is("precision", "fp16");
         Rule {
             defines,
@@ -64,6 +69,7 @@ impl Rule {
             texture: values.forced_u32("texture"),
             widening: values.f32("widening"),
             format: if fp16 { Format::Rgba16Float } else { Format::Rgba32Float },
+            cube,
             forgets: !values.is("start", "previous"),
             pyramid,
             starts_at_pyramid,
@@ -88,12 +94,13 @@ impl Rule {
         self.anew("REFRACTED")
     }
 
-    /// With one more definition, and nothing remembered of the frame before.
+    /// With one more definition, searched in textures, and nothing remembered of the frame before.
     fn anew(&self, define: &'static str) -> Rule {
         let mut rule = self.clone();
-        rule.defines.retain(|&(define, _)| define != "START_PYRAMID");
-        rule.defines.extend([("START_PYRAMID", 1), (define, 1)]);
-        Rule { forgets: true, starts_at_pyramid: true, ..rule }
+        let replaced = ["START_PYRAMID", "PYRAMID", "REFLECTOR_CUBE", "CUBE_NEWTON"];
+        rule.defines.retain(|(define, _)| !replaced.contains(define));
+        rule.defines.extend([("START_PYRAMID", 1), ("PYRAMID", 1), (define, 1)]);
+        Rule { forgets: true, starts_at_pyramid: true, pyramid: true, cube: None, ..rule }
     }
 
     /// For the method's shaders.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec2;
 
+use super::cube::BoundCube;
 use super::pyramid::Pyramid;
 use super::rule::Rule;
 use super::source::Source;
@@ -68,6 +69,8 @@ pub struct Mirror<'a> {
     pub place: usize,
     pub vertices: u32,
     pub gbuffer: &'a GBuffer,
+    /// Its cube maps, where those are searched.
+    pub cube: Option<BoundCube<'a>>,
     /// The camera the G-buffer was drawn with.
     pub camera: &'a CameraUniform,
     /// What the frame before found is void.
@@ -116,7 +119,7 @@ impl Search {
         texels: [u32; 2],
     ) -> Result<Search> {
         let pipeline = |file, defines| ComputePipeline::new(device, file, defines);
-        let starts = !rule.starts_at_pyramid;
+        let starts = rule.cube.is_none() && !rule.starts_at_pyramid;
         Ok(Search {
             start: starts.then(|| pipeline("virtual_objects/start.wgsl", &[])).transpose()?,
             pyramid: rule.pyramid.then(|| Pyramid::new(device, texels)).transpose()?,
@@ -185,6 +188,10 @@ impl Search {
             .optional()
             .sample("mirror_normal", &mirror.gbuffer.normal)
             .optional();
+        let pass = match &mirror.cube {
+            Some(cube) => cube.bind(pass),
+            None => pass,
+        };
         let pass = match &self.pyramid {
             Some(pyramid) => pass.sample("mirror_cells", &pyramid.cells).optional(),
             None => pass,

@@ -224,6 +224,7 @@ impl Second {
             place: 0,
             vertices: source.count,
             gbuffer: &self.gbuffer,
+            cube: None,
             camera: first.camera,
             cut: true,
             index: 1.0,

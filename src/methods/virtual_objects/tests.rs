@@ -1,12 +1,14 @@
 //! Reflection points against the exact ones, on the device: what searches find in the G-buffer of a
 //! finely cut sphere, held against Alhazen's root; of an ellipsoid in `ellipsoid`.
 
+mod cube;
 mod ellipsoid;
 
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3, Vec2, Vec3, Vec4};
 
+use super::cube::CubeMaps;
 use super::rule::Rule;
 use super::search::{Found, Mirror, Search};
 use super::source::{Lists, Source};
@@ -105,11 +107,17 @@ impl Bench {
         self.scene.pose(&mut frame, moment).unwrap();
         self.record.clear(&mut frame).unwrap();
         self.gbuffer.draw(&mut frame, &self.scene, "test", self.reflector, &camera).unwrap();
+        let cubes = self.rule.cube.map(|rule| {
+            let mut cubes = CubeMaps::new(&self.device, rule, self.rule.format).unwrap();
+            cubes.draw(&mut frame, &self.scene, self.reflector).unwrap();
+            cubes
+        });
         let mirror = Mirror {
             object: self.reflector,
             place: 0,
             vertices: self.source.count,
             gbuffer: &self.gbuffer,
+            cube: cubes.as_ref().and_then(|cubes| cubes.of(&self.scene, self.reflector)),
             camera: &camera,
             cut,
             index: 1.0,
@@ -172,13 +180,23 @@ impl Bench {
 /// Distances of the texels found from the exact points, in texels along the worse axis, in rising
 /// order: where the eight texels round the root's show the reflector too, and at its rim.
 fn errors(bench: &Bench, moment: &Moment, texels: &[Vec2]) -> [Vec<f32>; 2] {
+    errors_of(bench, moment, texels, |_| true)
+}
+
+/// The same of some vertices.
+fn errors_of(
+    bench: &Bench,
+    moment: &Moment,
+    texels: &[Vec2],
+    counts: impl Fn(usize) -> bool,
+) -> [Vec<f32>; 2] {
     let mask = bench.mask();
     let shows = |x: i32, y: i32| {
         let [width, height] = bench.gbuffer.size.map(|n| n as i32);
         (0..width).contains(&x) && (0..height).contains(&y) && mask[(y * width + x) as usize]
     };
     let (mut inside, mut rim) = (Vec::new(), Vec::new());
-    for (i, root) in bench.roots(moment) {
+    for (i, root) in bench.roots(moment).into_iter().filter(|&(i, _)| counts(i)) {
         let [x, y] = root.as_ivec2().to_array();
         let is_inside = (-1..=1).all(|dx| (-1..=1).all(|dy| shows(x + dx, y + dy)));
         let error = (texels[i] - root).abs().max_element();
