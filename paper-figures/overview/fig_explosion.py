@@ -81,7 +81,7 @@ def draw(figure):
     axis.set_ylabel("median displacement, px (log)")
     axis.set_title(f"mirror sphere across a view of {SIZE}")
     axis.grid(color=GRID, lw=0.6)
-    axis.legend(fontsize=8)
+    axis.legend(fontsize=8, loc="lower right", bbox_to_anchor=(1, 0.1))
     figure.plot = plot
     table = [
         [f"{ratio:g}", *(f"{errors[label][i]:.3f}" for label in errors)] for i, ratio in enumerate(SHELLS)
