@@ -20,7 +20,7 @@ struct Search {
     cap: u32,
     pad: u32,
 }
-@group(0) @binding(0) var<storage, read> search: Search;
+@group(0) @binding(20) var<storage, read> search: Search;
 @group(0) @binding(1) var<storage, read> spheres: Spheres;
 // Whose vertex each is.
 @group(0) @binding(3) var<storage, read> owners: array<u32>;
