@@ -3,7 +3,7 @@
 
 mod gpu_support;
 
-use gpu_support::{Session, frame, judged, methods};
+use gpu_support::{Session, frame, judged, methods, mirror_in_a_room};
 use mirrorbench::measure::Accuracy;
 use mirrorbench::methods::Case;
 use mirrorbench::scene::{self, FrameRecord, Scene};
@@ -83,8 +83,9 @@ fn a_closed_partner_is_mapped_in_place_of_an_open_mirror() {
     let half = "{ revolution = { profile = [[0.0, -0.8], [0.44184, -0.8], [0.8, -0.44184], [0.8, 0.0]], \
                 curve = \"bezier\", slices = 96, stacks = 24 } }";
     let session = Session::open();
-    let whole = mirrored(&session, shape, "");
-    let paired = mirrored(&session, half, &format!("closed = {shape}"));
+    let case = "explosion-map@revised";
+    let whole = mirror_in_a_room(&session, case, SIZE, shape, "");
+    let paired = mirror_in_a_room(&session, case, SIZE, half, &format!("closed = {shape}"));
     // The outlines differ where the half ends.
     let lower = |frame: &FrameRecord, i: usize| frame.position[i].y < 0.98;
     let pixels: Vec<usize> = whole
@@ -96,35 +97,6 @@ fn a_closed_partner_is_mapped_in_place_of_an_open_mirror() {
     let same = |i: &&usize| whole.record.point[**i].abs_diff_eq(paired.record.point[**i], 0.05);
     let share = pixels.iter().filter(same).count() as f64 / pixels.len() as f64;
     assert!(share > 0.98, "{share} of the pixels show the same point");
-}
-
-/// A mirror in a round room, seen from below its middle.
-fn mirrored(session: &Session, shape: &str, more: &str) -> FrameRecord {
-    let text = format!(
-        r#"
-        about = "test"
-        environment = {{ colour = [0.5, 0.6, 0.7] }}
-        materials = {{ mirror = {{ mirror = {{ reflectance = 1.0 }} }}, room = {{ colour = [0.5, 0.5, 0.5] }} }}
-        [camera]
-        fov_deg = 40.0
-        eye = [0.0, 0.4, 3.4]
-        target = [0.0, 0.9, 0.0]
-        [[objects]]
-        name = "room"
-        shape = {{ sphere = {{ radius = 6.0, slices = 96, stacks = 48 }} }}
-        material = "room"
-        [[objects]]
-        name = "mirror"
-        shape = {shape}
-        {more}
-        material = "mirror"
-        position = [0.0, 1.0, 0.0]
-        "#
-    );
-    let file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
-    std::fs::write(file.path(), text).unwrap();
-    let scene = scene::load(file.path().to_str().unwrap()).unwrap();
-    frame(session, &scene, "explosion-map@revised", SIZE, 0)
 }
 
 #[test]

@@ -6,7 +6,7 @@ mod gpu_support;
 use std::collections::BTreeSet;
 
 use glam::{Vec2, Vec3, Vec4Swizzles};
-use gpu_support::{Session, frame, judged, tracer};
+use gpu_support::{Session, frame, judged, mirror_in_a_room, tracer};
 use mirrorbench::geometry::{Camera, Projection, cube, optics};
 use mirrorbench::scene::{self, CameraPath, FrameRecord, Mirror, Pattern, Scene, Status};
 
@@ -98,9 +98,10 @@ fn a_closed_partner_is_searched_in_place_of_an_open_mirror() {
     let shape = "{ sphere = { radius = 0.8, slices = 96, stacks = 48 } }";
     let half = "{ revolution = { profile = [[0.0, -0.8], [0.44184, -0.8], [0.8, -0.44184], [0.8, 0.0]], \
                 curve = \"bezier\", slices = 96, stacks = 24 } }";
-    let whole = open_mirror(&session, shape, "");
-    let paired = open_mirror(&session, half, &format!("closed = {shape}"));
-    let alone = open_mirror(&session, half, "");
+    let case = "virtual-objects:cull=none";
+    let whole = mirror_in_a_room(&session, case, SIZE, shape, "");
+    let paired = mirror_in_a_room(&session, case, SIZE, half, &format!("closed = {shape}"));
+    let alone = mirror_in_a_room(&session, case, SIZE, half, "");
     let right = |tested: &FrameRecord| {
         let pixels = common(&whole, tested);
         assert!(pixels.len() > 500, "only {} pixels", pixels.len());
@@ -112,35 +113,6 @@ fn a_closed_partner_is_searched_in_place_of_an_open_mirror() {
     };
     let (paired, alone) = (right(&paired), right(&alone));
     assert!(paired > 0.9 && paired > alone + 0.02, "{paired} with a partner, {alone} without");
-}
-
-/// A mirror over a checkered floor, seen from below its middle.
-fn open_mirror(session: &Session, shape: &str, more: &str) -> FrameRecord {
-    let text = format!(
-        r#"
-        about = "test"
-        environment = {{ colour = [0.5, 0.6, 0.7] }}
-        materials = {{ mirror = {{ mirror = {{ reflectance = 1.0 }} }}, floor = {{ colour = [0.5, 0.5, 0.5] }} }}
-        [camera]
-        fov_deg = 40.0
-        eye = [0.0, 0.4, 3.4]
-        target = [0.0, 0.9, 0.0]
-        [[objects]]
-        name = "room"
-        shape = {{ sphere = {{ radius = 6.0, slices = 96, stacks = 48 }} }}
-        material = "floor"
-        [[objects]]
-        name = "mirror"
-        shape = {shape}
-        {more}
-        material = "mirror"
-        position = [0.0, 1.0, 0.0]
-        "#
-    );
-    let file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
-    std::fs::write(file.path(), text).unwrap();
-    let scene = scene::load(file.path().to_str().unwrap()).unwrap();
-    frame(session, &scene, "virtual-objects:cull=none", SIZE, 0)
 }
 
 #[test]

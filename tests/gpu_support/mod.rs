@@ -130,3 +130,38 @@ pub fn wrong(tested: &FrameRecord, maps: &Maps) -> [Vec<usize>; 2] {
     let unflagged = all.iter().copied().filter(|&i| !tested.record.ids[i].flag()).collect();
     [all, unflagged]
 }
+
+/// What a mirror of some shape shows in a round room, seen from below its middle; `more` are further keys of it.
+pub fn mirror_in_a_room(
+    session: &Session,
+    case: &str,
+    size: [u32; 2],
+    shape: &str,
+    more: &str,
+) -> FrameRecord {
+    let text = format!(
+        r#"
+        about = "test"
+        environment = {{ colour = [0.5, 0.6, 0.7] }}
+        materials = {{ mirror = {{ mirror = {{ reflectance = 1.0 }} }}, room = {{ colour = [0.5, 0.5, 0.5] }} }}
+        [camera]
+        fov_deg = 40.0
+        eye = [0.0, 0.4, 3.4]
+        target = [0.0, 0.9, 0.0]
+        [[objects]]
+        name = "room"
+        shape = {{ sphere = {{ radius = 6.0, slices = 96, stacks = 48 }} }}
+        material = "room"
+        [[objects]]
+        name = "mirror"
+        shape = {shape}
+        {more}
+        material = "mirror"
+        position = [0.0, 1.0, 0.0]
+        "#
+    );
+    let file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
+    std::fs::write(file.path(), text).unwrap();
+    let scene = scene::load(file.path().to_str().unwrap()).unwrap();
+    frame(session, &scene, case, size, 0)
+}
