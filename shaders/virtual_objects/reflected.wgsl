@@ -12,6 +12,9 @@ enable primitive_index;
 #ifdef REFRACTED
 #import bindings::departure::LOBE_REFRACTED
 #endif
+#ifdef HIDDEN_CLIP
+#import virtual_objects::drawn::drawn
+#endif
 #ifdef SECOND
 #import virtual_objects::twice::{second_of, twice_at}
 #endif
@@ -34,14 +37,6 @@ struct Reflected {
 #ifdef HIDDEN_CLIP
 @group(0) @binding(4) var<storage, read> owners: array<u32>;
 @group(0) @binding(5) var<storage, read> source_indices: array<u32>;
-
-// See split.wgsl.
-struct Drawn {
-    arguments: vec4<u32>,
-    made: vec4<u32>,
-    triangles: array<vec4<u32>>,
-}
-@group(0) @binding(6) var<storage, read> drawn: Drawn;
 #endif
 
 struct VirtualSurface {

@@ -10,6 +10,7 @@ enable primitive_index;
 }
 #import common::camera::{Camera, arriving, facing, seen_normal}
 #import virtual_objects::corner::Corner
+#import virtual_objects::drawn::drawn
 
 struct Shown {
     // The reflector it is seen in.
@@ -23,14 +24,6 @@ struct Shown {
 @group(0) @binding(1) var<storage, read> corners: array<Corner>;
 @group(0) @binding(4) var<storage, read> owners: array<u32>;
 @group(0) @binding(5) var<storage, read> source_indices: array<u32>;
-
-// See split.wgsl.
-struct Drawn {
-    arguments: vec4<u32>,
-    made: vec4<u32>,
-    triangles: array<vec4<u32>>,
-}
-@group(0) @binding(6) var<storage, read> drawn: Drawn;
 @group(0) @binding(30) var<uniform> camera: Camera;
 @group(0) @binding(36) var first_position: texture_2d<f32>;
 @group(0) @binding(37) var first_normal: texture_2d<f32>;

@@ -25,6 +25,24 @@ pub const STAGE: Param = Param {
           the stencil",
 };
 
+/// Where a forward method draws a vertex it has found the reflection point of.
+pub const IMAGE: Param = Param {
+    name: "image",
+    kind: Kind::Choice(&["mirror", "push"]),
+    defaults: &["mirror", "push"],
+    needs: None,
+    doc: "where a vertex is drawn: mirrored in the plane found, or pushed along the eye ray",
+};
+
+/// How far a fragment of a forward method may be off, see [`super::reflected::Reflected`].
+pub const RESIDUAL_PX: Param = Param {
+    name: "residual_px",
+    kind: Kind::Real { min: 0.0, max: 1000.0 },
+    defaults: &["0", "1"],
+    needs: None,
+    doc: "pixels a fragment may break the law of reflection by before it is flagged; 0: none is",
+};
+
 /// What values a parameter takes; bounds are inclusive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {

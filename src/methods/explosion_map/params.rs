@@ -1,5 +1,6 @@
 //! What can be chosen, and what had to be: course notes on the method are all we have of it.
 
+use crate::methods::params::{IMAGE, RESIDUAL_PX};
 use crate::methods::{Kind, Param};
 
 const TWO: Option<(&str, &[&str])> = Some(("spheres", &["2"]));
@@ -55,13 +56,7 @@ pub const PARAMS: &[Param] = &[
         needs: Some(("cell", &["walk"])),
         doc: "most triangles looked at in one walk",
     },
-    Param {
-        name: "image",
-        kind: Kind::Choice(&["mirror", "push"]),
-        defaults: &["mirror", "push"],
-        needs: None,
-        doc: "where a vertex is drawn: mirrored in the plane found, or pushed along the eye ray",
-    },
+    IMAGE,
     Param {
         name: "hidden",
         kind: Kind::Choice(&["cut", "drop"]),
@@ -77,11 +72,5 @@ pub const PARAMS: &[Param] = &[
         needs: None,
         doc: "longest edge of diffuse meshes, metres; 0: as modelled",
     },
-    Param {
-        name: "residual_px",
-        kind: Kind::Real { min: 0.0, max: 1000.0 },
-        defaults: &["0", "1"],
-        needs: None,
-        doc: "pixels a fragment may break the law of reflection by before it is flagged; 0: none is",
-    },
+    RESIDUAL_PX,
 ];

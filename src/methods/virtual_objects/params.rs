@@ -1,5 +1,6 @@
 //! What can be chosen, and what had to be: the paper states few of its parameters.
 
+use crate::methods::params::{IMAGE, RESIDUAL_PX};
 use crate::methods::{Kind, Param};
 
 /// Choices of `hidden` that reflect hidden vertices too.
@@ -103,13 +104,7 @@ pub const PARAMS: &[Param] = &[
         needs: SCREEN,
         doc: "the reflection point: the best texel's, or between texels by Gauss-Newton steps",
     },
-    Param {
-        name: "image",
-        kind: Kind::Choice(&["mirror", "push"]),
-        defaults: &["mirror", "push"],
-        needs: None,
-        doc: "where a vertex is drawn: mirrored in the plane found, or pushed along the eye ray",
-    },
+    IMAGE,
     Param {
         name: "cap",
         kind: Kind::Integer { min: 1, max: 65535 },
@@ -174,13 +169,7 @@ pub const PARAMS: &[Param] = &[
         needs: Some(("hidden", CUT)),
         doc: "most times an edge is halved",
     },
-    Param {
-        name: "residual_px",
-        kind: Kind::Real { min: 0.0, max: 1000.0 },
-        defaults: &["0", "1"],
-        needs: None,
-        doc: "pixels a fragment may break the law of reflection by before it is flagged; 0: none is",
-    },
+    RESIDUAL_PX,
     Param {
         name: "bounces",
         kind: Kind::Integer { min: 1, max: 2 },
