@@ -1,7 +1,7 @@
 //! Steadiness along a path: how scene points tremble in the mirrors of consecutive frames.
 //!
-//! Points are followed through the truth's mirrors ([`super::track`]), not through glass; what a case
-//! draws of each is its displacement vector d(t) in pixels ([`super::drawn`]). However far off, a
+//! Points are followed through the truth's mirrors (`track`), not through glass; what a case
+//! draws of each is its displacement vector d(t) in pixels (`drawn`). However far off, a
 //! steady picture has a d that changes slowly, so what is measured is the second difference:
 //!
 //! jitter(t) = |d(t - 1) - 2 d(t) + d(t + 1)| / 4

@@ -34,7 +34,7 @@ pub const IMAGE: Param = Param {
     doc: "where a vertex is drawn: mirrored in the plane found, or pushed along the eye ray",
 };
 
-/// How far a fragment of a forward method may be off, see [`super::reflected::Reflected`].
+/// How far a fragment of a forward method may be off.
 pub const RESIDUAL_PX: Param = Param {
     name: "residual_px",
     kind: Kind::Real { min: 0.0, max: 1000.0 },
