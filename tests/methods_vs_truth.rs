@@ -262,25 +262,6 @@ fn the_same_scene_gives_the_same_frame_twice() {
     assert_eq!(first, frame(&session, &scene, "environment-map", SIZE, 3));
 }
 
-#[test]
-fn hybrids_serve_each_reflector_with_its_own_method() {
-    let (session, scene) = (Session::open(), scene::load("two-spheres").unwrap());
-    let names: Vec<_> =
-        scene.reflectors().iter().map(|&o| scene.objects[o as usize].name.clone()).collect();
-    let case = format!("{}=environment-map;*=none", names[0]);
-    let hybrid = frame(&session, &scene, &case, SIZE, 0);
-    let whole = frame(&session, &scene, "environment-map", SIZE, 0);
-    let first = scene.reflectors()[0];
-    let mut seen = [0, 0];
-    for i in hybrid.reflector_pixels() {
-        let served = hybrid.reflector[i] == first;
-        seen[usize::from(served)] += 1;
-        let expected = if served { whole.record.ids[i] } else { scene::Ids::MISSING };
-        assert_eq!(hybrid.record.ids[i], expected);
-    }
-    assert!(seen.iter().all(|&n| n > 20), "{seen:?}");
-}
-
 fn common(a: &FrameRecord, b: &FrameRecord) -> Vec<usize> {
     a.reflector_pixels().into_iter().filter(|&i| a.reflector[i] == b.reflector[i]).collect()
 }

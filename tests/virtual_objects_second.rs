@@ -18,14 +18,14 @@ fn two_bounces_show_what_mirrors_show_in_mirrors() {
     let (session, scene) = (Session::open(), scene::load("two-spheres").unwrap());
     let by_order = |case| judged(&session, &scene, case, SIZE, BEHIND).1.by_order;
     let (once, twice) = (by_order(ONCE), by_order(TWICE));
-    let shares = |orders: &[OrderAccuracy]| [0, 1, 2].map(|i| orders[i].bad_share.one);
+    let shares = |orders: &[OrderAccuracy]| [0, 1, 2].map(|i| orders[i].group.bad_share.one);
     let ([first, second, third], [_, second_once, _]) = (shares(&twice), shares(&once));
-    assert!(once[1].order == 2 && once[1].share > 0.03, "{once:?}");
+    assert!(once[1].order == 2 && once[1].group.share > 0.03, "{once:?}");
     // Of two bounces one shows the mirror itself.
     assert_eq!(second_once, 1.0);
-    assert!(second < 0.12 && twice[1].missing < 0.05, "{twice:?}");
+    assert!(second < 0.12 && twice[1].group.missing < 0.05, "{twice:?}");
     assert_eq!(third, 1.0);
-    assert!((first - once[0].bad_share.one).abs() < 0.002, "{once:?} {twice:?}");
+    assert!((first - once[0].group.bad_share.one).abs() < 0.002, "{once:?} {twice:?}");
 }
 
 /// Pixels that both show by two mirrors, the same object.

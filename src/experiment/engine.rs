@@ -8,9 +8,10 @@ use glam::{Vec3, Vec4, Vec4Swizzles};
 use half::f16;
 
 use super::dump_file;
+use super::part::{self, Part};
 use crate::error::{Error, Result};
 use crate::gpu::{Device, Frame, Recorded};
-use crate::methods::{Case, Changes, MethodInfo, ReflectionMethod, Setup, Want};
+use crate::methods::{Case, Changes, MethodInfo, Want};
 use crate::scene::{FrameRecord, Lobe, Moment, ObjectId, Scene, matches_pattern};
 use crate::stages::{
     CameraUniform, Composite, DirectView, FallbackStage, Filling, Footprint, GpuScene,
@@ -63,17 +64,6 @@ pub struct RunOptions {
     pub shader_dir: Option<PathBuf>,
     /// Write the stored images of passes that match the pattern into the folder.
     pub dump: Option<(String, PathBuf)>,
-}
-
-/// A method and the reflectors it serves.
-struct Part {
-    info: &'static MethodInfo,
-    method: Box<dyn ReflectionMethod>,
-    reflectors: Vec<ObjectId>,
-    /// Those of them that are of glass.
-    glass: Vec<ObjectId>,
-    /// The moment it was last prepared for.
-    prepared: Option<Moment>,
 }
 
 /// Draws a case.
@@ -136,13 +126,14 @@ impl Engine {
         let fallback = options.fallback.filling();
         let fallback =
             fallback.map(|filling| FallbackStage::new(device, &gpu_scene, filling, mode));
-        let refracted = scene.refracts().then(|| ReflectionRecord::new(device, size, mode));
-        let parts = parts(device, &gpu_scene, case, registry, options)?;
+        let refracted =
+            scene.refracts().then(|| ReflectionRecord::new(device, size, mode, case.parts.len()));
+        let parts = part::make(device, &gpu_scene, case, registry, options)?;
         Ok(Engine {
             frame: Frame::new(device)?,
             direct: DirectView::new(device, size, mode)?,
             footprint: Footprint::new(device, size)?,
-            record: ReflectionRecord::new(device, size, mode)?,
+            record: ReflectionRecord::new(device, size, mode, case.parts.len())?,
             refracted: refracted.transpose()?,
             composite: Composite::new(device, &gpu_scene, size)?,
             eyes: eyes(scene),
@@ -179,18 +170,24 @@ impl Engine {
 
     /// The work of the last frame, over all lobes, by the names of its parts and the fallback.
     fn counters(&self) -> Result<Vec<(String, u64)>> {
-        let mut counts = self.record.counters()?;
-        if let Some(refracted) = &self.refracted {
-            for (count, more) in counts.iter_mut().zip(refracted.counters()?) {
-                *count += more;
+        let mut named = Vec::new();
+        for (place, part) in self.parts.iter().enumerate() {
+            let mut counts = self.record.counters(place)?;
+            if let Some(refracted) = &self.refracted {
+                for (count, more) in counts.iter_mut().zip(refracted.counters(place)?) {
+                    *count += more;
+                }
             }
+            let of_part = part.counters.iter().cloned().zip(0..);
+            // The fallback counts beside the first part.
+            let with_fallback = place == 0 && self.fallback.is_some();
+            let of_fallback = FallbackStage::COUNTERS.iter().filter(|_| with_fallback);
+            let of_fallback = of_fallback.map(|name| (*name).to_owned());
+            let places = of_part.chain(of_fallback.zip(FallbackStage::FIRST_COUNTER..));
+            let count = |at: usize| counts.get(at).map(|&count| u64::from(count));
+            named.extend(places.filter_map(|(name, at)| Some((name, count(at)?))));
         }
-        let of_parts = self.parts.iter().flat_map(|part| part.info.counters.iter().zip(0..));
-        let of_fallback = FallbackStage::COUNTERS.iter().zip(FallbackStage::FIRST_COUNTER..);
-        let of_fallback = of_fallback.filter(|_| self.fallback.is_some());
-        let named = of_parts.chain(of_fallback);
-        let count = |place: usize| counts.get(place).map(|&count| u64::from(count));
-        Ok(named.filter_map(|(name, place)| Some(((*name).to_owned(), count(place)?))).collect())
+        Ok(named)
     }
 
     /// Draw frames in one submit, nothing read back: for timing. A frame is a cut unless the one
@@ -235,13 +232,15 @@ impl Engine {
         for (lobe, record) in lobes {
             let Some(record) = record else { continue };
             record.clear(frame)?;
-            for Part { info, method, reflectors, glass, .. } in &mut self.parts {
+            for (place, part) in self.parts.iter_mut().enumerate() {
+                let Part { info, method, reflectors, glass, .. } = part;
                 let asked: &[ObjectId] = match lobe {
                     Lobe::Reflected => reflectors,
                     Lobe::Refracted if info.refracts => glass,
                     Lobe::Refracted => &[],
                 };
                 if !asked.is_empty() {
+                    record.count_for(place);
                     let view = View { reflectors: asked, lobe, ..view };
                     method.reflect(frame, scene, &view, record)?;
                 }
@@ -249,6 +248,7 @@ impl Engine {
             if let Some(fallback) = &self.fallback {
                 let all = scene.scene.with_lobe(lobe);
                 let view = View { reflectors: &all, lobe, ..view };
+                record.count_for(0);
                 fallback.fill(frame, scene, &view, record)?;
             }
         }
@@ -331,53 +331,6 @@ impl Engine {
             refracted: self.refracted.as_ref().map(ReflectionRecord::read).transpose()?,
         })
     }
-}
-
-/// Make the methods of a case, each for the reflectors its pattern serves.
-fn parts(
-    device: &Arc<Device>,
-    scene: &GpuScene,
-    case: &Case,
-    registry: &[&'static MethodInfo],
-    options: &RunOptions,
-) -> Result<Vec<Part>> {
-    let mut served = vec![Vec::new(); case.parts.len()];
-    for object in scene.scene.reflectors() {
-        if let Some(part) = case.part_for(&scene.scene.objects[object as usize].name) {
-            served[part].push(object);
-        }
-    }
-    let mut parts = Vec::with_capacity(served.len());
-    for (selected, reflectors) in case.parts.iter().zip(served) {
-        if reflectors.is_empty() {
-            let name = |o: ObjectId| scene.scene.objects[o as usize].name.as_str();
-            let names: Vec<_> = scene.scene.reflectors().into_iter().map(name).collect();
-            return Err(Error::Usage(format!(
-                "no reflector of scene {} matches `{}`; it has: {}",
-                scene.scene.name,
-                selected.reflectors,
-                names.join(", ")
-            )));
-        }
-        let info = registry.iter().find(|info| info.id == selected.method);
-        let made = info.and_then(|info| info.new.map(|new| (*info, new)));
-        let Some((info, new)) = made else {
-            return Err(Error::Usage(format!("{} does not run on a GPU", selected.method)));
-        };
-        let method = new(&Setup {
-            device,
-            scene,
-            variant: selected.variant,
-            values: &selected.values,
-            mode: options.record,
-            size: options.size,
-            reflectors: &reflectors,
-        })?;
-        let glass = scene.scene.with_lobe(Lobe::Refracted);
-        let glass = reflectors.iter().filter(|object| glass.contains(object)).copied().collect();
-        parts.push(Part { info, method, reflectors, glass, prepared: None });
-    }
-    Ok(parts)
 }
 
 /// What moved between two moments. Light and environment do not move yet.

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use super::lab::Lab;
 use crate::error::Result;
-use crate::measure::{Accuracy, BadShare, Flip, OrderAccuracy, Quantiles, accuracy, mean_by_order};
+use crate::measure::{
+    Accuracy, BadShare, Flip, Quantiles, accuracy, mean_by_order, mean_by_reflector,
+};
 use crate::methods::Case;
 use crate::scene::Scene;
 use crate::truth::{Cache, Tracer, TruthOptions};
@@ -67,7 +69,8 @@ impl Evidence {
     pub fn accuracy(&self) -> Option<Accuracy> {
         let all: Vec<&Accuracy> = self.frames.iter().map(|(_, accuracy)| accuracy).collect();
         let first = all.first()?;
-        let orders: Vec<&[OrderAccuracy]> = all.iter().map(|a| a.by_order.as_slice()).collect();
+        let orders: Vec<_> = all.iter().map(|a| a.by_order.as_slice()).collect();
+        let reflectors: Vec<_> = all.iter().map(|a| a.by_reflector.as_slice()).collect();
         let mean = |field: fn(&Accuracy) -> f64| mean(all.iter().map(|a| field(a))).unwrap_or(0.0);
         Some(Accuracy {
             bad_share: BadShare {
@@ -95,6 +98,7 @@ impl Evidence {
                 exposure: first.flip.exposure,
             },
             by_order: mean_by_order(&orders),
+            by_reflector: mean_by_reflector(&reflectors),
         })
     }
 }
@@ -135,6 +139,7 @@ pub(super) mod tests {
             psnr: None,
             flip: Flip { mean: x, p95: x, ppd: 67.0, exposure: 1.0 },
             by_order: Vec::new(),
+            by_reflector: Vec::new(),
         }
     }
 

@@ -12,6 +12,7 @@ pub mod frame_file;
 pub mod lab;
 pub mod output;
 pub mod panels;
+mod part;
 pub mod path;
 pub mod probe;
 pub mod results;

@@ -170,15 +170,12 @@ pub fn case_columns(
     let joined = |names: Vec<&str>| names.join(";");
     let method = joined(case.parts.iter().map(|part| part.method).collect());
     let variant = joined(case.parts.iter().map(|part| part.variant).collect());
-    let hybrid = case.parts.len() > 1 || case.parts.iter().any(|part| part.reflectors != "*");
     let mut params = Map::new();
     for part in &case.parts {
         let table = methods.iter().find(|info| info.id == part.method).map(|info| info.params);
         for (key, text) in &part.values.0 {
             let kind = table.and_then(|t| t.iter().find(|p| p.name == *key)).map(|p| p.kind);
-            let name =
-                if hybrid { format!("{}/{key}", part.reflectors) } else { (*key).to_owned() };
-            params.insert(name, typed(kind, text));
+            params.insert(case.column(part, key), typed(kind, text));
         }
     }
     (method, variant, params)

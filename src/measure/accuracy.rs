@@ -8,8 +8,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::colour::{self, EXPOSURE};
+use super::groups::{OrderAccuracy, ReflectorAccuracy, by_order, by_reflector};
 use super::judge::{Judged, judge_all};
-use super::orders::{OrderAccuracy, by_order};
 use crate::error::{Error, Result};
 use crate::scene::{FrameRecord, NO_OBJECT};
 use crate::truth::Tracer;
@@ -52,6 +52,9 @@ pub struct Accuracy {
     /// By the number of reflectors the truth met, rising.
     #[serde(default)]
     pub by_order: Vec<OrderAccuracy>,
+    /// By the reflector seen, in the order of their names.
+    #[serde(default)]
+    pub by_reflector: Vec<ReflectorAccuracy>,
 }
 
 /// Share of bad pixels by the displacement still tolerated, in pixels.
@@ -190,6 +193,7 @@ pub fn accuracy(
         psnr: colour::psnr(pictures()),
         flip: flip.0,
         by_order: by_order(truth, &compared, &judged),
+        by_reflector: by_reflector(tracer.scene(), truth, &compared, &judged),
     };
     Ok((accuracy, maps))
 }

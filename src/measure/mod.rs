@@ -6,9 +6,9 @@ pub mod colour;
 mod displacement;
 mod drawn;
 mod field;
+mod groups;
 mod judge;
 mod mirrors;
-mod orders;
 pub mod ratio;
 mod root;
 pub mod stability;
@@ -19,5 +19,7 @@ mod tree;
 mod usual;
 
 pub use accuracy::{Accuracy, BadShare, Class, Flip, Maps, Quantiles, accuracy};
-pub use orders::{OrderAccuracy, mean_by_order};
+pub use groups::{
+    GroupAccuracy, OrderAccuracy, ReflectorAccuracy, mean_by_order, mean_by_reflector,
+};
 pub use stability::{Jitter, PathFrame, PathMeasure, Stability};

@@ -84,6 +84,12 @@ impl Case {
         self.parts.iter().position(|part| matches_pattern(&part.reflectors, reflector))
     }
 
+    /// What a part's parameter or counter is called in results: `PATTERN/name` in a hybrid.
+    pub fn column(&self, part: &Selected, name: &str) -> String {
+        let is_hybrid = self.parts.len() > 1 || part.reflectors != "*";
+        if is_hybrid { format!("{}/{name}", part.reflectors) } else { name.to_owned() }
+    }
+
     /// Whether any part uses this method.
     pub fn uses(&self, method: &str) -> bool {
         self.parts.iter().any(|part| part.method == method)

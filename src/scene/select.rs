@@ -24,14 +24,16 @@ impl Scene {
 }
 
 impl Scene {
-    /// The given objects by group, groups in the order they first appear.
-    pub fn groups(&self, objects: &[ObjectId]) -> Vec<(String, Vec<ObjectId>)> {
+    /// The groups that the given reflectors are parts of, in the order they first appear, each with all its
+    /// reflectors, rising: parts of one thing share a map, and none stands in it, whoever else serves them.
+    pub fn groups(&self, reflectors: &[ObjectId]) -> Vec<(String, Vec<ObjectId>)> {
         let mut groups: Vec<(String, Vec<ObjectId>)> = Vec::new();
-        for &id in objects {
-            let group = &self.objects[id as usize].group;
-            match groups.iter_mut().find(|(name, _)| name == group) {
-                Some((_, members)) => members.push(id),
-                None => groups.push((group.clone(), vec![id])),
+        let group_of = |id: ObjectId| &self.objects[id as usize].group;
+        for group in reflectors.iter().map(|&id| group_of(id)) {
+            if groups.iter().all(|(name, _)| name != group) {
+                let mut members = self.reflectors();
+                members.retain(|&id| group_of(id) == group);
+                groups.push((group.clone(), members));
             }
         }
         groups

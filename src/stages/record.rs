@@ -54,12 +54,21 @@ struct Evidence {
     point: Image,
     last: Image,
     ids: Image,
-    /// Device-independent work, in the order of `MethodInfo::counters`.
-    counters: Buffer,
+    /// Device-independent work, in the order of `MethodInfo::counters`; one buffer for each part of a
+    /// hybrid.
+    counters: Vec<Buffer>,
+    /// The part whose work is counted now.
+    part: usize,
 }
 
 impl ReflectionRecord {
-    pub fn new(device: &Arc<Device>, size: [u32; 2], mode: RecordMode) -> Result<Self> {
+    /// Images of `size` pixels; work is counted for each of `parts` methods.
+    pub fn new(
+        device: &Arc<Device>,
+        size: [u32; 2],
+        mode: RecordMode,
+        parts: usize,
+    ) -> Result<Self> {
         let image = |name: &str, format| Image::new(device, name, format, size, Shape::Flat);
         let evidence = match mode {
             RecordMode::Radiance => None,
@@ -67,7 +76,8 @@ impl ReflectionRecord {
                 point: image("record point", Format::Rgba32Float)?,
                 last: image("record last point", Format::Rgba32Float)?,
                 ids: image("record ids", Format::Rgba32Uint)?,
-                counters: Buffer::storage(device, "record counters", 4 * COUNTERS as u64)?,
+                counters: (0..parts).map(|_| counters(device)).collect::<Result<_>>()?,
+                part: 0,
             }),
         };
         Ok(ReflectionRecord { radiance: image("record radiance", Format::Rgba16Float)?, evidence })
@@ -83,9 +93,17 @@ impl ReflectionRecord {
             images.push(("point", &e.point, zero));
             images.push(("last", &e.last, zero));
             images.push(("ids", &e.ids, Load::ClearWords(words)));
-            frame.pass("record/clear-counters").fill(&[&e.counters], 0)?;
+            let counters: Vec<&Buffer> = e.counters.iter().collect();
+            frame.pass("record/clear-counters").fill(&counters, 0)?;
         }
         frame.pass("record/clear").clear(&images)
+    }
+
+    /// Count the work of a part of a hybrid from now on.
+    pub fn count_for(&mut self, part: usize) {
+        if let Some(e) = &mut self.evidence {
+            e.part = part;
+        }
     }
 
     /// Bind it to a compute pass.
@@ -97,7 +115,7 @@ impl ReflectionRecord {
                 .store("record_point", &e.point)
                 .store("record_last", &e.last)
                 .store("record_ids", &e.ids)
-                .buffer("counters", &e.counters)
+                .buffer("counters", e.counters())
                 .optional(),
         }
     }
@@ -106,7 +124,7 @@ impl ReflectionRecord {
     pub fn bind_counters<'f>(&self, pass: Pass<'f>) -> Pass<'f> {
         match &self.evidence {
             None => pass,
-            Some(e) => pass.buffer("counters", &e.counters).optional(),
+            Some(e) => pass.buffer("counters", e.counters()).optional(),
         }
     }
 
@@ -119,7 +137,7 @@ impl ReflectionRecord {
                 .colour("record_point", &e.point, Load::Keep)
                 .colour("record_last", &e.last, Load::Keep)
                 .colour("record_ids", &e.ids, Load::Keep)
-                .buffer("counters", &e.counters)
+                .buffer("counters", e.counters())
                 .optional(),
         }
     }
@@ -137,10 +155,20 @@ impl ReflectionRecord {
         Ok(record)
     }
 
-    /// The counters, as the last frame left them; none without evidence.
-    pub fn counters(&self) -> Result<Vec<u32>> {
-        self.evidence.as_ref().map_or(Ok(Vec::new()), |e| e.counters.read())
+    /// The counters of a part, as the last frame left them; none without evidence.
+    pub fn counters(&self, part: usize) -> Result<Vec<u32>> {
+        self.evidence.as_ref().map_or(Ok(Vec::new()), |e| e.counters[part].read())
     }
+}
+
+impl Evidence {
+    fn counters(&self) -> &Buffer {
+        &self.counters[self.part]
+    }
+}
+
+fn counters(device: &Arc<Device>) -> Result<Buffer> {
+    Buffer::storage(device, "record counters", 4 * COUNTERS as u64)
 }
 
 /// A colour of half floats.

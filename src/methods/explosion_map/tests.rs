@@ -89,7 +89,7 @@ fn misses(case: &str) -> (Vec<Misses>, Vec<u32>) {
     let camera = CameraUniform::new(&moment.camera, VIEW);
     let lists = Lists::new(&scene.scene, 0.0).unwrap();
     let source = lists.upload(&device).unwrap();
-    let record = ReflectionRecord::new(&device, VIEW, RecordMode::Full).unwrap();
+    let record = ReflectionRecord::new(&device, VIEW, RecordMode::Full, 1).unwrap();
     let bytes = size_of::<Corner>() as u64 * u64::from(source.count);
     let corners = Buffer::storage(&device, "corners", bytes).unwrap();
     let mut frame = Frame::new(&device).unwrap();
@@ -105,7 +105,7 @@ fn misses(case: &str) -> (Vec<Misses>, Vec<u32>) {
     let found: Vec<Corner> = corners.read().unwrap();
     let eye = moment.camera.eye.as_dvec3();
     let of_shell = |shell: usize| shell_misses(&camera, eye, &lists, &found, 1 + shell as ObjectId);
-    ((0..SHELLS.len()).map(of_shell).collect(), record.counters().unwrap())
+    ((0..SHELLS.len()).map(of_shell).collect(), record.counters(0).unwrap())
 }
 
 fn shell_misses(

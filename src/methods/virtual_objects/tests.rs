@@ -73,7 +73,7 @@ impl Bench {
             found: Found::new(&device, source.count, 1, 0).unwrap(),
             gbuffer: GBuffer::new(&device, texels, rule.format).unwrap(),
             search: Search::new(&device, &rule, RecordMode::Full, texels).unwrap(),
-            record: ReflectionRecord::new(&device, VIEW, RecordMode::Full).unwrap(),
+            record: ReflectionRecord::new(&device, VIEW, RecordMode::Full, 1).unwrap(),
             rule,
             reflector,
             exact,
@@ -126,7 +126,7 @@ impl Bench {
         let Bench { scene, source, found, search, record, .. } = self;
         search.run(&mut frame, scene, source, found, &mirror, record).unwrap();
         frame.submit().unwrap();
-        let counters = self.record.counters().unwrap();
+        let counters = self.record.counters(0).unwrap();
         if self.rule.clips {
             let corners: Vec<Corner> = self.found.corners.read().unwrap();
             let nowhere = Vec2::splat(f32::NAN);
