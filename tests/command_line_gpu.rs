@@ -130,6 +130,26 @@ fn render_leaves_pictures_evidence_and_dumps() {
     }
 }
 
+#[test]
+fn one_buffer_of_a_pass_is_dumped_as_an_array() {
+    let folder = TempDir::new().unwrap();
+    let case = "reflection-morphing:files=none";
+    let arguments = ["render", "--scene", "columns", "--case", case, "--record", "full"];
+    let dump = ["--dump", "reflection-morphing/morph:corners"];
+    run(&[&arguments[..], &SMALL, &dump].concat(), folder.path());
+    let files: Vec<_> = walk(folder.path()).into_iter().filter(|f| f.contains("/dump/")).collect();
+    assert_eq!(files.len(), 1, "{files:?}");
+    assert!(files[0].ends_with("reflection-morphing/morph/corners.npy"), "{files:?}");
+    let bytes = fs::read(&files[0]).unwrap();
+    assert_eq!(&bytes[..8], b"\x93NUMPY\x01\x00");
+    // Position and image of a vertex, a word each to fill up.
+    let words = bytes[10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]))..].chunks_exact(4);
+    let words: Vec<u32> = words.map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
+    assert!(words.len() > 8000 && words.len().is_multiple_of(8), "{}", words.len());
+    let found = words.chunks_exact(8).filter(|corner| corner[..3] != corner[4..7]).count();
+    assert!(found > words.len() / 80, "{found}");
+}
+
 fn walk(folder: &Path) -> Vec<String> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {

@@ -16,6 +16,7 @@ from mirrorfigures import main, render
 from mirrorfigures.cameras import camera
 from mirrorfigures.charts import COLOURS, GRID
 from mirrorfigures.figure import INK, QUIET
+from mirrorfigures.plans import Plane, circle
 from mirrorfigures.reflection_search import (
     bisector,
     middle,
@@ -23,7 +24,6 @@ from mirrorfigures.reflection_search import (
     search,
     sphere_root,
     textures,
-    unit,
 )
 
 SCENE, SIZE = "columns", "640x360"
@@ -39,9 +39,9 @@ def draw(figure):
     figure.cite(run)
     drawn = textures(run, camera(SCENE, 0, SIZE).eye)
     r, n = (v[0] for v in drawn.at(search(drawn, VERTEX, middle(drawn.mask))[-1]))
-    plane = Plane(drawn.eye)
-    section, normals = plane.section(drawn)
-    other = np.abs(plane.angle(section) - OTHER_DEG).argmin()
+    plane = Plane(CENTRE, drawn.eye, VERTEX)
+    section, normals = section_of(plane, drawn)
+    other = np.abs(turned(plane(section)) - OTHER_DEG).argmin()
     plot, axes = plt.subplot_mosaic(
         [["plane", "angle"], ["plane", "value"]],
         figsize=(9.6, 4.4),
@@ -64,37 +64,17 @@ def draw(figure):
     )
 
 
-class Plane:
-    """Coordinates in the plane of observer, vertex and centre, which lies at the origin."""
-
-    def __init__(self, eye: np.ndarray):
-        self.along = unit(eye - CENTRE)
-        across = (VERTEX - CENTRE) - (VERTEX - CENTRE) @ self.along * self.along
-        self.across = unit(across)
-
-    def __call__(self, points: np.ndarray) -> np.ndarray:
-        return self.turn(np.asarray(points) - CENTRE)
-
-    def turn(self, vectors: np.ndarray) -> np.ndarray:
-        return np.stack([vectors @ self.along, vectors @ self.across], -1)
-
-    def angle(self, points: np.ndarray) -> np.ndarray:
-        """Degrees from the direction of the observer."""
-        along, across = np.moveaxis(self(points), -1, 0)
-        return np.degrees(np.arctan2(across, along))
-
-    def section(self, drawn) -> tuple[np.ndarray, np.ndarray]:
-        """The texels' points in the plane and their normals, in order."""
-        points, normals = drawn.points[drawn.mask], drawn.normals[drawn.mask]
-        near = np.abs((points - CENTRE) @ np.cross(self.along, self.across)) < NEAR_M
-        points, normals = points[near], normals[near]
-        order = np.argsort(self.angle(points))
-        return points[order], normals[order]
+def section_of(plane: Plane, drawn) -> tuple[np.ndarray, np.ndarray]:
+    """The texels' points in the plane and their normals, in order."""
+    points, normals = drawn.points[drawn.mask], drawn.normals[drawn.mask]
+    near = plane.away(points) < NEAR_M
+    points, normals = points[near], normals[near]
+    order = np.argsort(turned(plane(points)))
+    return points[order], normals[order]
 
 
 def draw_plane(axis, plane, eye, section, at):
-    turn = np.linspace(0, 2 * np.pi, 361)
-    axis.plot(RADIUS * np.cos(turn), RADIUS * np.sin(turn), color=QUIET, lw=0.8)
+    circle(axis, RADIUS, color=QUIET)
     axis.plot(*plane(section).T, ".", color=INK, ms=3)
     places = {"O": plane(eye), "V": plane(VERTEX), "V'": plane(mirrored(VERTEX, *at["R"]))}
     for name, (point, normal) in at.items():
@@ -124,7 +104,7 @@ def draw_plane(axis, plane, eye, section, at):
 
 def draw_angles(angle, value, plane, eye, section, normals):
     b = bisector(section, eye, VERTEX)
-    places = plane.angle(section)
+    places = turned(plane(section))
     signed = turned(plane.turn(b)) - turned(plane.turn(normals))
     angle.plot(places, signed, ".", ms=3, color=COLOURS[0])
     value.plot(places, (normals * b).sum(-1), ".", ms=3, color=COLOURS[1])
@@ -136,7 +116,7 @@ def draw_angles(angle, value, plane, eye, section, normals):
 
 
 def turned(vectors: np.ndarray) -> np.ndarray:
-    """Degrees of vectors in the plane."""
+    """Degrees of vectors in the plane, from the direction of the observer."""
     return np.degrees(np.arctan2(vectors[:, 1], vectors[:, 0]))
 
 

@@ -18,6 +18,7 @@ from mirrorfigures import main, render
 from mirrorfigures.cameras import camera, description
 from mirrorfigures.charts import COLOURS, GRID
 from mirrorfigures.figure import INK, QUIET
+from mirrorfigures.plans import circle
 from mirrorfigures.reflection_search import bisector, is_hidden, middle, search, textures
 
 SCENE, SIZE, FRAME = "columns-turn", "320x180", 48
@@ -79,8 +80,7 @@ def draw_texture(axis, drawn, vertices: np.ndarray, widening: float) -> int:
 
 
 def draw_plan(axis, view, drawn):
-    turn = np.linspace(0, 2 * np.pi, 361)
-    axis.plot(CENTRE[0] + RADIUS * np.cos(turn), CENTRE[2] + RADIUS * np.sin(turn), color=QUIET, lw=0.8)
+    circle(axis, RADIUS, CENTRE[[0, 2]], color=QUIET)
     for k in (1, 0):  # the view's over the wider ones'
         points = drawn[k].points[drawn[k].mask]
         points = points[np.abs(points[:, 1] - CENTRE[1]) < SLAB_M]

@@ -1,9 +1,8 @@
 """Martin & Popescu 2004, Figure 8: a hybrid reflector, the teapot's body morphed, its parts environment mapped.
 
 To be seen: The columns stand close to the body. In the body they are drawn near their places where it is
-morphed, and far off where it is environment mapped; in spout, handle and lid it is hard to tell. Rays end where
-they meet the spout, so that the morphed body shows the environment there, which is black below its horizon; so
-are rims of floor that no ray of all eight sampling locations passes by.
+morphed, and far off where it is environment mapped; in spout, handle and lid it is hard to tell. With one bounce
+the other parts are black in the morphed body, the foot, too; the map has none of them in it.
 
 Claim: "If a reflector is composed of several parts, good results can be obtained from rendering the larger
 pieces with reflection morphing and the smaller pieces with environment mapping" (section 7). "The body of the

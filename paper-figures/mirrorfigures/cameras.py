@@ -40,13 +40,13 @@ def description(scene: str) -> dict:
 
 
 def camera(scene: str, frame: int, size: str) -> Camera:
-    """The camera of a frame of a scene whose camera stands still or follows keys; an orbit only where
-    it begins, at frame 0."""
+    """The perspective camera of a frame of a scene."""
     said = description(scene)
     view = said["camera"]
-    if "orbit" in view and frame:
-        raise ValueError(f"the camera of {scene} orbits; only its frame 0 can be read off the file")
-    eye, target = (_at(view, key, frame / said.get("rate_hz", 24.0)) for key in ("eye", "target"))
+    time_s = frame / said.get("rate_hz", 24.0)
+    eye, target = (_at(view, key, time_s) for key in ("eye", "target"))
+    if orbit := view.get("orbit"):
+        eye = target + _about_y(_orbited(orbit, time_s)) @ (eye - target)
     forward = (target - eye) / np.linalg.norm(target - eye)
     right = np.cross(forward, (0.0, 1.0, 0.0))
     right /= np.linalg.norm(right)
@@ -54,6 +54,19 @@ def camera(scene: str, frame: int, size: str) -> Camera:
     half_height = float(np.tan(np.radians(view["fov_deg"]) / 2))
     up = np.cross(right, forward)
     return Camera(eye, forward, right, up, half_height * width / height, half_height)
+
+
+def _orbited(orbit: dict, time_s: float) -> float:
+    """Radians a camera has gone round its target, counter-clockwise seen from above."""
+    turn = 2 * np.pi * time_s / orbit["period_s"]
+    if (sweep := orbit.get("sweep_deg")) is not None:
+        turn = np.radians(sweep) * np.sin(turn)
+    return float(np.radians(orbit.get("start_deg", 0.0)) + turn)
+
+
+def _about_y(angle: float) -> np.ndarray:
+    sin, cos = np.sin(angle), np.cos(angle)
+    return np.array([(cos, 0, sin), (0, 1, 0), (-sin, 0, cos)])
 
 
 def _at(view: dict, name: str, time_s: float) -> np.ndarray:

@@ -79,13 +79,17 @@ def _last_number(stem: str) -> int | None:
     return int(numbers[-1]) if numbers else None
 
 
-def render(scene: str, case: str, *, frame: int = 0, size: str = "1280x720", dump: str = "") -> Run:
+def render(
+    scene: str, case: str, *, frame: int = 0, size: str = "1280x720", dump: str | tuple[str, ...] = ()
+) -> Run:
     """Draw one frame of one case with its evidence, judged against the truth unless it is the truth;
-    the run has one row and one frame."""
+    the run has one row and one frame, and below `dump` what it was told to dump."""
     judged = 0 if re.split("[@:]", case)[0] == "truth" else 1
     arguments = ["render", "--scene", scene, "--case", case, "--frame", str(frame)]
     arguments += ["--size", size, "--record", "full", "--truth-frames", str(judged)]
-    return _run(arguments + (["--dump", dump] if dump else []))
+    for pattern in (dump,) if isinstance(dump, str) else dump:
+        arguments += ["--dump", pattern]
+    return _run(arguments)
 
 
 def bench(

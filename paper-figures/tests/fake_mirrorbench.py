@@ -146,6 +146,39 @@ def ball(size: int) -> dict[str, dict[str, np.ndarray]]:
     return layers
 
 
+def dump(wanted: list[str], folder, case: str, size: list[int], frame: int) -> None:
+    images = {
+        "environment-map/ball": lambda: ball(64),
+        "environment-map/capture": lambda: {"radiance": cube(128)},
+        "virtual-objects/gbuffer": lambda: gbuffer(case, *size, frame),
+        "z-buffered-map/capture": lambda: {"surface": depths(128)},
+    }
+    for name in wanted:
+        if name in images:
+            for variable, layers in images[name]().items():
+                save(folder / name / f"{variable}.exr", layers)
+        elif ":" in name:
+            file = folder / f"{name.replace(':', '/')}.npy"
+            file.parent.mkdir(parents=True, exist_ok=True)
+            np.save(file, morphed()[file.stem])
+
+
+def morphed() -> dict[str, np.ndarray]:
+    """Buffers of a grid of points before the mirror, all of them drawn; each pair of rows hides others."""
+    x, y, z = (a.ravel() for a in np.meshgrid((-0.5, 0.5), np.linspace(0.6, 2.4, 12), (1.5, 3.5)))
+    vertices = np.stack([x, y, z], 1)
+    towards = np.array([0.3, 1.6, 4.0]) - CENTRE
+    out = (vertices - CENTRE) / np.linalg.norm(vertices - CENTRE, axis=1)[:, None] + towards / np.linalg.norm(towards)
+    seen = CENTRE + RADIUS * out / np.linalg.norm(out, axis=1)[:, None]
+    images = CENTRE - 0.2 * (vertices - CENTRE)
+    empty = np.zeros((len(vertices), 1))
+    corners = np.concatenate([vertices, empty, images, empty], 1).astype(np.float32)
+    points = np.broadcast_to(np.concatenate([seen, empty + 1], 1), (8, len(vertices), 4)).astype(np.float32)
+    triangles = np.stack([np.arange(40), np.arange(40) + 1, np.arange(40) + 2], 1).astype(np.uint32)
+    words = {"corners": corners, "points": points, "source_indices": triangles}
+    return {name: np.ascontiguousarray(a).ravel().view(np.uint32) for name, a in words.items()}
+
+
 def gbuffer(case: str, width: int, height: int, frame: int) -> dict[str, dict[str, np.ndarray]]:
     """The mirror's points and normals, by name, in textures of the width the case names."""
     if named := re.search(r"texture=(\d+)", case):
@@ -242,7 +275,7 @@ def main() -> int:
     parser.add_argument("--size", default="160x90")
     parser.add_argument("--frame", type=int, default=0)
     parser.add_argument("--out", type=Path)
-    parser.add_argument("--dump", default="")
+    parser.add_argument("--dump", action="append", default=[])
     parser.add_argument("--frames", default="0..1")
     parser.add_argument("--path", action="store_true")
     parser.add_argument("--film", type=Path)
@@ -266,15 +299,7 @@ def main() -> int:
     for case in args.case or []:
         if args.command == "render":
             save(args.out / f"frame-{args.frame:04}.exr", draw(case, *size, args.frame))
-            images = {"environment-map/ball": lambda: ball(64)}
-            images["virtual-objects/gbuffer"] = lambda: gbuffer(case, *size, args.frame)
-            if args.dump in images:
-                for name, layers in images[args.dump]().items():
-                    save(args.out / "dump" / args.dump / f"{name}.exr", layers)
-            if args.dump == "environment-map/capture":
-                save(args.out / "dump" / args.dump / "radiance.exr", cube(128))
-            if args.dump == "z-buffered-map/capture":
-                save(args.out / "dump" / args.dump / "surface.exr", depths(128))
+            dump(args.dump, args.out / "dump", case, size, args.frame)
         if args.film:
             first, end = (int(n) for n in args.frames.split(".."))
             pictures = [filmed([case, *args.beside], *size, frame) for frame in range(first, end)]

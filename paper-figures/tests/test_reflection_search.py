@@ -94,8 +94,7 @@ def test_cameras_are_read_off_scenes(tmp_path, monkeypatch):
     assert seen.eye == pytest.approx([0, 0, 3]) and seen.half_width == pytest.approx(2.0)
     assert seen.place(np.array([1.0, 0.5, 0.0])) == pytest.approx([0.5 + 1 / 12, 0.5 - 0.5 / 6])
     assert seen.widened(2).place(np.array([3.0, 0.0, 0.0])) == pytest.approx([0.75 - 0.125, 0.5])
-    still = "[camera]\nfov_deg = 90.0\neye = [0.0, 0.0, 1.0]\ntarget = [0.0, 0.0, 0.0]\norbit = {}\n"
+    still = "[camera]\nfov_deg = 90.0\neye = [0.0, 0.0, 1.0]\ntarget = [0.0, 0.0, 0.0]\norbit = { period_s = 4.0 }\n"
     (tmp_path / "b.toml").write_text(still)
     assert camera("b", 0, "10x10").forward == pytest.approx([0, 0, -1])
-    with pytest.raises(ValueError, match="orbits"):
-        camera("b", 1, "10x10")
+    assert camera("b", 24, "10x10").eye == pytest.approx([1, 0, 0])

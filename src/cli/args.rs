@@ -31,9 +31,10 @@ pub struct Common {
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Write the images that passes of this name store (`*` and `?` match) to DIR/dump
+    /// Write the images that passes of this name store (`*` and `?` match) to DIR/dump; PASS:VARIABLE writes such an
+    /// image alone, or a buffer that such a pass uses, as .npy of 32-bit words
     #[arg(long, value_name = "GLOB")]
-    pub dump: Option<String>,
+    pub dump: Vec<String>,
     /// Read shaders from this folder instead of from the program
     #[arg(long, value_name = "DIR")]
     pub shader_dir: Option<PathBuf>,

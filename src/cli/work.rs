@@ -27,7 +27,7 @@ pub fn lab<'m>(
         record: common.record,
         seed: common.seed,
         shader_dir: common.shader_dir.clone(),
-        dump: common.dump.clone().map(|glob| (glob, base.join("dump"))),
+        dump: (!common.dump.is_empty()).then(|| (common.dump.clone(), base.join("dump"))),
     };
     Lab::new(methods, settings, console.progress().clone())
 }

@@ -12,7 +12,7 @@ use super::part::{self, Part};
 use crate::error::{Error, Result};
 use crate::gpu::{Device, Frame, Recorded};
 use crate::methods::{Case, Changes, MethodInfo, Want};
-use crate::scene::{FrameRecord, Lobe, Moment, ObjectId, Scene, matches_pattern};
+use crate::scene::{FrameRecord, Lobe, Moment, ObjectId, Scene};
 use crate::stages::{
     CameraUniform, Composite, DirectView, FallbackStage, Filling, Footprint, GpuScene,
     ReflectionRecord, View,
@@ -62,8 +62,8 @@ pub struct RunOptions {
     pub fallback: Fallback,
     /// Read shaders from here instead of from the program.
     pub shader_dir: Option<PathBuf>,
-    /// Write the stored images of passes that match the pattern into the folder.
-    pub dump: Option<(String, PathBuf)>,
+    /// Write the stored images of passes that match a pattern into the folder, and the buffers of `PASS:VARIABLE`.
+    pub dump: Option<(Vec<String>, PathBuf)>,
 }
 
 /// Draws a case.
@@ -151,9 +151,8 @@ impl Engine {
     /// Draw one frame and read it back. `cut`: it does not follow the frame before.
     pub fn frame(&mut self, moment: &Moment, cut: bool) -> Result<(FrameRecord, FrameTimes)> {
         self.frame.count_invocations(true);
-        if let Some((pattern, _)) = &self.options.dump {
-            let pattern = pattern.clone();
-            self.frame.dump_where(move |pass| matches_pattern(&pattern, pass));
+        if let Some((patterns, _)) = &self.options.dump {
+            self.frame.dump_where(dump_file::filter(patterns));
         }
         self.frame.begin()?;
         let recording = self.record_frame(moment, cut)?;

@@ -31,7 +31,7 @@ pub struct Settings {
     pub seed: u64,
     pub shader_dir: Option<PathBuf>,
     /// Passes whose images are written to the folder.
-    pub dump: Option<(String, PathBuf)>,
+    pub dump: Option<(Vec<String>, PathBuf)>,
 }
 
 pub struct Lab<'m> {

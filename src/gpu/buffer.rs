@@ -97,6 +97,7 @@ impl Buffer {
     pub(super) fn upload_ring(device: &Arc<Device>, bytes: u64) -> Result<Buffer> {
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER
             | vk::BufferUsageFlags::STORAGE_BUFFER
+            | vk::BufferUsageFlags::TRANSFER_SRC
             | build_input(device);
         Self::new(device, "frame uploads", bytes, usage, MemoryLocation::CpuToGpu)
     }

@@ -18,18 +18,24 @@ use crate::error::{Error, Result};
 /// Bytes of uniforms and small arrays one submit can hold.
 const UPLOAD_BYTES: u64 = 8 << 20;
 
-/// Which passes' images are wanted.
-type DumpFilter = Box<dyn Fn(&str) -> bool + Send>;
+/// What is wanted of a pass and a variable, which may be an image.
+type DumpFilter = Box<dyn Fn(&str, &str, bool) -> bool + Send>;
 
-/// One image a pass wrote, as it was right after the pass.
+/// One image or buffer of a pass, as it was right after it.
 pub struct Dump {
     pub pass: String,
     pub variable: String,
-    pub format: Format,
-    pub size: [u32; 2],
-    pub layers: u32,
+    pub kind: DumpKind,
+    pub bytes: Vec<u8>,
+}
+
+/// What a dump holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DumpKind {
     /// Rows packed, layer after layer.
-    pub texels: Vec<u8>,
+    Image { format: Format, size: [u32; 2], layers: u32 },
+    /// 32-bit words.
+    Buffer,
 }
 
 /// What a submit leaves behind.
@@ -86,8 +92,9 @@ impl Frame {
         self.statistics = on;
     }
 
-    /// Copy out every image that passes with such names write.
-    pub fn dump_where(&mut self, filter: impl Fn(&str) -> bool + Send + 'static) {
+    /// Copy out every image that passes write, and every buffer they use, where `filter` says so of the
+    /// pass's name, the variable's, and whether it is an image.
+    pub fn dump_where(&mut self, filter: impl Fn(&str, &str, bool) -> bool + Send + 'static) {
         self.dump_filter = Some(Box::new(filter));
     }
 
@@ -151,25 +158,43 @@ impl Frame {
         self.kept.push(used);
     }
 
-    pub(super) fn wants_dump(&self, pass: &str) -> bool {
-        self.dump_filter.as_ref().is_some_and(|wanted| wanted(pass))
+    /// Copy an image out where that is wanted, after the pass that wrote it.
+    pub(super) fn dump_image(&mut self, pass: &str, variable: &str, image: &Image) -> Result<()> {
+        let layers = image.shape.layers();
+        let kind = DumpKind::Image { format: image.format, size: image.size, layers };
+        self.dump([pass, variable], kind, image.readback_bytes(), |commands, target| {
+            image.copy_to(commands, target);
+        })
     }
 
-    /// Copy an image out, after the pass that wrote it.
-    pub(super) fn dump(&mut self, pass: &str, variable: &str, image: &Image) -> Result<()> {
+    /// The same of a buffer, or the part of it that the pass used.
+    pub(super) fn dump_buffer(&mut self, pass: &str, variable: &str, slice: &Slice) -> Result<()> {
+        let device = self.device.clone();
+        self.dump([pass, variable], DumpKind::Buffer, slice.bytes, |commands, target| {
+            let region = vk::BufferCopy::default().src_offset(slice.offset).size(slice.bytes);
+            // SAFETY: recording; the pass bound the range, so it is inside a buffer that the frame keeps,
+            // and the target is as long.
+            unsafe { device.raw.cmd_copy_buffer(commands, slice.buffer, target.raw, &[region]) };
+        })
+    }
+
+    fn dump(
+        &mut self,
+        [pass, variable]: [&str; 2],
+        kind: DumpKind,
+        bytes: u64,
+        copy: impl FnOnce(vk::CommandBuffer, &Buffer),
+    ) -> Result<()> {
+        let is_image = kind != DumpKind::Buffer;
+        if !self.dump_filter.as_ref().is_some_and(|wanted| wanted(pass, variable, is_image)) {
+            return Ok(());
+        }
         let name = format!("dump of {pass}/{variable}");
-        let target = Buffer::readback(&self.device, &name, image.readback_bytes())?;
+        let target = Buffer::readback(&self.device, &name, bytes)?;
         super::command::full_barrier(&self.device, self.commands);
-        image.copy_to(self.commands, &target);
-        let dump = Dump {
-            pass: pass.to_owned(),
-            variable: variable.to_owned(),
-            format: image.format,
-            size: image.size,
-            layers: image.shape.layers(),
-            texels: Vec::new(),
-        };
-        self.dumps.push((dump, target));
+        copy(self.commands, &target);
+        let [pass, variable] = [pass, variable].map(str::to_owned);
+        self.dumps.push((Dump { pass, variable, kind, bytes: Vec::new() }, target));
         Ok(())
     }
 
@@ -198,7 +223,7 @@ impl Frame {
         self.kept.clear();
         let mut dumps = Vec::with_capacity(self.dumps.len());
         for (mut dump, buffer) in self.dumps.drain(..) {
-            dump.texels = buffer.contents()?;
+            dump.bytes = buffer.contents()?;
             dumps.push(dump);
         }
         Ok(Recorded {

@@ -25,7 +25,7 @@ pub use acceleration::{Acceleration, MeshTriangles, Placement};
 pub use buffer::{Buffer, Slice};
 pub use device::{Device, DeviceInfo};
 pub use draw::{Draw, Load};
-pub use frame::{Dump, Frame, Recorded};
+pub use frame::{Dump, DumpKind, Frame, Recorded};
 pub use image::{Format, Image, Shape};
 pub use instance::{ValidationLog, list_devices};
 pub use pass::Pass;

@@ -335,16 +335,17 @@ impl<'f> Pass<'f> {
         work(&mut self)?;
         self.frame.profiler.end(self.frame.commands);
         self.frame.end_label();
-        if !self.frame.wants_dump(&self.name) {
-            return Ok(());
-        }
         for bound in &self.bound {
-            if let Resource::Image { image, level: Some(0) } = bound.resource {
-                self.frame.dump(&self.name, bound.name, image)?;
+            match &bound.resource {
+                Resource::Image { image, level: Some(0) } => {
+                    self.frame.dump_image(&self.name, bound.name, image)?;
+                }
+                Resource::Slice(slice) => self.frame.dump_buffer(&self.name, bound.name, slice)?,
+                _ => {}
             }
         }
         for Colour { name, image, .. } in &self.colours {
-            self.frame.dump(&self.name, name, image)?;
+            self.frame.dump_image(&self.name, name, image)?;
         }
         Ok(())
     }

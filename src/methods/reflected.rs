@@ -88,6 +88,8 @@ impl Reflected {
             .buffer("source_triangles", &source.triangles)
             .buffer("first_triangles", &source.first_triangles)
             .optional()
+            .buffer("source_indices", &source.indices)
+            .optional()
             .depth_stencil(&view.footprint.depth_stencil, Load::Clear([0.0; 4]), Load::Keep)
     }
 

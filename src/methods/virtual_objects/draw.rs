@@ -49,10 +49,7 @@ impl Drawing {
         let mut pass =
             self.0.pass(frame, scene, name, (view, record), mirrors, (source, &found.corners));
         if let Some(split) = split {
-            pass = pass
-                .buffer("owners", &source.owners)
-                .buffer("source_indices", &source.indices)
-                .buffer("drawn", &split.drawn);
+            pass = pass.buffer("owners", &source.owners).buffer("drawn", &split.drawn);
         }
         if let Some((_, shown)) = first {
             pass = shown.bind(pass);
