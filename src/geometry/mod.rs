@@ -13,6 +13,7 @@ pub mod optics;
 pub mod polynomial;
 pub mod proxy;
 pub mod random;
+pub mod ray_bundle;
 pub mod ray_octree;
 pub mod reflection_plane;
 pub mod shapes;

@@ -7,6 +7,7 @@
 //! greatest depth leaves are not split, and their lists grow.
 
 mod build;
+mod near;
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;

@@ -6,6 +6,8 @@
 //! should thus be considered as being part of the camera": rays know nothing of diffuse objects, which may
 //! move; they are made anew where a reflector moves.
 //!
+//! `bounces` above one: see `orders`.
+//!
 //! Choices the paper leaves to us: where nodes lie (`cell`, from the world's origin on), how finely meshes are
 //! cut (`subdivide`), that rays seen inside a closed mirror are left out, and that both sides of reflected
 //! triangles are drawn. Look-ups of vertices that stand still are kept for as long as their node is one of
@@ -16,23 +18,26 @@ pub mod file;
 pub mod grid;
 mod morph;
 mod nodes;
+mod orders;
 mod params;
 pub mod ray_map;
+mod trace;
 
 use crate::error::{Error, Result};
 use crate::geometry::Projection;
 use crate::gpu::Frame;
-use crate::scene::ObjectId;
 use crate::stages::{GpuScene, MirroredEnvironment, ReflectionRecord, View};
 use crate::truth::Cache;
 
 use super::reflected::Reflected;
 use super::source::{Lists, Source};
-use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
+use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Values, Want};
 use file::Recipe;
-use grid::{Grid, SamplingCell};
+use grid::{Corner, Grid, SamplingCell};
 use morph::{Morph, Vertices};
 use nodes::Nodes;
+use orders::{Drawing, Orders};
+use trace::Trace;
 
 pub const INFO: MethodInfo = MethodInfo {
     id: "reflection-morphing",
@@ -44,7 +49,7 @@ pub const INFO: MethodInfo = MethodInfo {
     refracts: false,
     variants: &["published"],
     params: params::PARAMS,
-    limits: "one reflection a vertex and reflector; one bounce; reflectors that move cost eight octrees a frame; \
+    limits: "one reflection a vertex and chain of reflectors (`bounces`); reflectors that move cost eight octrees a frame; \
              vertices no ray passes by take their triangles with them",
     passes: &[
         "reflection-morphing/subdivide",
@@ -57,13 +62,12 @@ pub const INFO: MethodInfo = MethodInfo {
         "reflection-morphing/look-up-moving",
         "reflection-morphing/morph",
         "reflection-morphing/reflected",
+        "reflection-morphing/shown",
+        "reflection-morphing/shown-background",
     ],
     counters: &["look-ups", "rays", "valid"],
     new: Some(new),
 };
-
-/// Reflections along a ray: "the results use one bounce" (section 8).
-const LAYERS: u32 = 1;
 
 struct ReflectionMorphing {
     /// Longest edge of diffuse meshes, metres; 0 as modelled.
@@ -73,6 +77,9 @@ struct ReflectionMorphing {
     environment: MirroredEnvironment,
     morph: Morph,
     reflected: Reflected,
+    /// Of chains of more than one reflector, each by its own projection.
+    orders: Option<Orders>,
+    bounces: u32,
     /// What is reflected and where it was found; made by the first `prepare`.
     state: Option<State>,
 }
@@ -91,27 +98,44 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
                 .to_owned(),
         ));
     }
+    let bounces = values.u32("bounces");
     let recipe = Recipe {
         map: values.u32("map"),
         depth: values.u32("depth"),
-        layers: LAYERS,
+        layers: bounces,
         still: values.is("still", "in"),
     };
     let grid = Grid { cell: values.f32("cell") };
     let scene = &setup.scene.scene;
     let moves = scene.reflectors().into_iter().any(|mirror| scene.is_moving(mirror));
     let files = values.is("files", "kept") && !moves;
-    let mut defines = mode.defines();
-    defines.push(("TWO_SIDED", 1));
+    let look_up = look_up_defines(values);
+    let mapped = look_up.contains(&("RAY_MAP", 1));
+    let apart = bounces > 1 && values.is("traces", "apart");
+    let orders = apart.then(|| Orders::new(device, mode, setup.size, bounces));
+    let with_mode = |defines: &[(&'static str, u32)]| [&mode.defines(), defines].concat();
     Ok(Box::new(ReflectionMorphing {
         edge: values.f32("subdivide"),
         grid,
-        nodes: Nodes::new(recipe, grid, files.then(Cache::of_user).transpose()?),
+        nodes: Nodes::new(recipe, grid, files.then(Cache::of_user).transpose()?, mapped),
         environment: MirroredEnvironment::new(device, mode)?,
-        morph: Morph::new(device, mode, values.is("lookup", "brute-force"))?,
-        reflected: Reflected::new(device, mode, &defines, 0.0)?,
+        morph: Morph::new(device, &with_mode(&look_up))?,
+        reflected: Reflected::new(device, mode, &with_mode(&[("TWO_SIDED", 1)]), 0.0)?,
+        orders: orders.transpose()?,
+        bounces,
         state: None,
     }))
+}
+
+/// How vertices are looked up and their places weighed.
+fn look_up_defines(values: &Values) -> Vec<(&'static str, u32)> {
+    let further = values.u32("bounces") > 1;
+    let choices = [
+        ("BRUTE_FORCE", values.is("lookup", "brute-force")),
+        ("TRACES_MIXED", values.is("traces", "mixed")),
+        ("RAY_MAP", further),
+    ];
+    choices.into_iter().filter(|(_, on)| *on).map(|(name, _)| (name, 1)).collect()
 }
 
 impl ReflectionMethod for ReflectionMorphing {
@@ -121,7 +145,7 @@ impl ReflectionMethod for ReflectionMorphing {
             let edge = self.edge;
             let lists =
                 frame.cpu("reflection-morphing/subdivide", || Lists::new(&scene.scene, edge))?;
-            let vertices = Vertices::new(&device, &scene.scene, &lists, want.reflectors.len())?;
+            let vertices = Vertices::new(&device, &scene.scene, &lists)?;
             self.state = Some(State { source: lists.upload(&device)?, vertices });
         }
         if want.changed.reflectors {
@@ -140,18 +164,14 @@ impl ReflectionMethod for ReflectionMorphing {
     ) -> Result<()> {
         let cell = self.grid.cell_of(view.camera.eye());
         self.fetch(frame, scene, &cell)?;
-        let Some(State { source, vertices }) = &self.state else { return Ok(()) };
+        let Some(State { source, .. }) = &self.state else { return Ok(()) };
         source.pose(frame, scene, "reflection-morphing")?;
         self.environment.fill(frame, scene, "reflection-morphing", view, record)?;
         let corners = cell.corners();
-        for (place, &object) in view.reflectors.iter().enumerate() {
-            let mirror = morph::Mirror { object, place, rank: rank_of(scene, object) };
-            self.morph.look_up(frame, scene, (source, vertices), &self.nodes, &mirror, record)?;
-            self.morph.run(frame, scene, (source, vertices), &corners, &mirror, (view, record))?;
-            let (name, to) = ("reflection-morphing", (view, &*record));
-            self.reflected.draw(frame, scene, name, to, object, (source, &vertices.corners))?;
+        for &object in view.reflectors {
+            let trace = Trace::of(&scene.scene, object);
+            self.follow(frame, scene, (view, record), &corners, trace)?;
         }
-        self.nodes.slots.iter_mut().flatten().for_each(|node| node.is_asked = true);
         Ok(())
     }
 }
@@ -167,9 +187,40 @@ impl ReflectionMorphing {
         let at = (&*scene.scene, scene.moment());
         frame.cpu("reflection-morphing/octree", || self.nodes.fetch(&device, at, &corners))
     }
-}
 
-/// A reflector's rank among the scene's.
-fn rank_of(scene: &GpuScene, object: ObjectId) -> u32 {
-    scene.scene.reflectors().iter().take_while(|&&mirror| mirror != object).count() as u32
+    /// Draw what is seen by a trace, and by those that go on from it.
+    fn follow(
+        &mut self,
+        frame: &mut Frame,
+        scene: &GpuScene,
+        (view, record): (&View, &ReflectionRecord),
+        corners: &[Corner; 8],
+        trace: Trace,
+    ) -> Result<()> {
+        let Some(State { source, vertices }) = &mut self.state else { return Ok(()) };
+        let nodes = &mut self.nodes;
+        self.morph.look_up(frame, scene, (source, vertices), nodes, trace, record)?;
+        self.morph.run(frame, scene, (source, vertices), corners, trace, (view, record))?;
+        let to = Drawing { view, record, source, corners: &vertices.corners };
+        match &self.orders {
+            Some(orders) if trace.order > 1 => orders.draw(frame, scene, to, trace)?,
+            _ => {
+                let (name, to) = ("reflection-morphing", (view, record));
+                let what = (&*source, &vertices.corners);
+                self.reflected.draw(frame, scene, name, to, trace.first, what)?;
+            }
+        }
+        let Some(orders) = self.orders.as_ref().filter(|_| trace.order < self.bounces) else {
+            return Ok(());
+        };
+        let mirrors = scene.scene.reflectors().into_iter();
+        let longer = mirrors.map(|mirror| trace.on(&scene.scene, mirror));
+        let longer: Vec<Trace> = longer.filter(|longer| nodes.know(longer.packed)).collect();
+        if !longer.is_empty() {
+            orders.show(frame, scene, to, trace)?;
+        }
+        longer
+            .into_iter()
+            .try_for_each(|longer| self.follow(frame, scene, (view, record), corners, longer))
+    }
 }

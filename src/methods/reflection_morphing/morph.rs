@@ -1,17 +1,19 @@
 //! MORPH_VERTEX (Martin & Popescu 2004, section 6) on the device: eight look-ups a vertex, interpolated.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 
 use super::grid;
 use super::nodes::{Node, Nodes};
+use super::trace::Trace;
 use crate::error::Result;
-use crate::gpu::{Buffer, ComputePipeline, Device, Frame, Pass};
+use crate::gpu::{Buffer, ComputePipeline, Defines, Device, Frame, Pass};
 use crate::methods::reflected::Corner;
 use crate::methods::source::{Lists, Source};
-use crate::scene::{Ids, ObjectId, Scene};
-use crate::stages::{GpuScene, RecordMode, ReflectionRecord, View};
+use crate::scene::{ObjectId, Scene};
+use crate::stages::{GpuScene, ReflectionRecord, View};
 
 /// WGSL `Octree` of `shaders/reflection_morphing/octree.wgsl`.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -21,6 +23,8 @@ struct OctreeStruct {
     trace: u32,
     high: [f32; 3],
     segments: u32,
+    map: u32,
+    pads: [u32; 3],
 }
 
 /// WGSL `LookUp` of `shaders/reflection_morphing/look_up.wgsl`.
@@ -40,8 +44,8 @@ struct MorphStruct {
     weights: [f32; 8],
     total: u32,
     reflector: ObjectId,
-    pad_a: u32,
-    pad_b: u32,
+    order: u32,
+    pad: u32,
 }
 
 /// Places of vertices in the source.
@@ -55,19 +59,10 @@ pub struct Vertices {
     /// Of objects that stand still, and of those that move at any time.
     still: Places,
     moving: Places,
-    /// Of each reflector: for each location, and each vertex, where it is seen.
-    points: Vec<Buffer>,
-    /// [`Corner`]s for the reflector morphed last.
+    /// Of each trace met so far: for each location, and each vertex, where it is seen.
+    points: BTreeMap<u32, Buffer>,
+    /// [`Corner`]s for the trace morphed last.
     pub corners: Buffer,
-}
-
-/// The reflector at hand.
-pub struct Mirror {
-    pub object: ObjectId,
-    /// Among those of [`Vertices::points`].
-    pub place: usize,
-    /// Among the scene's reflectors.
-    pub rank: u32,
 }
 
 /// Pipelines.
@@ -79,12 +74,7 @@ pub struct Morph {
 impl Vertices {
     /// # Errors
     /// [`crate::error::Error::Device`] with the numbers when a list is beyond the device's limits.
-    pub fn new(
-        device: &Arc<Device>,
-        scene: &Scene,
-        lists: &Lists,
-        reflectors: usize,
-    ) -> Result<Vertices> {
+    pub fn new(device: &Arc<Device>, scene: &Scene, lists: &Lists) -> Result<Vertices> {
         let places = |moves: bool| {
             let owners = (0..).zip(&lists.owners);
             let chosen = owners.filter(|(_, owner)| scene.is_moving(**owner) == moves);
@@ -93,60 +83,70 @@ impl Vertices {
             Ok(Places { buffer, count: places.len() as u32 })
         };
         let count = lists.owners.len() as u64;
-        let points = || Buffer::storage(device, "points seen", 8 * 16 * count);
         let corners = size_of::<Corner>() as u64 * count;
         Ok(Vertices {
             still: places(false)?,
             moving: places(true)?,
-            points: (0..reflectors).map(|_| points()).collect::<Result<_>>()?,
+            points: BTreeMap::new(),
             corners: Buffer::storage(device, "morphed corners", corners)?,
         })
+    }
+
+    /// Have room for what is seen by a trace of so many vertices.
+    fn make_room(&mut self, device: &Arc<Device>, trace: Trace, count: u32) -> Result<()> {
+        if !self.points.contains_key(&trace.packed) {
+            let points = Buffer::storage(device, "points seen", 8 * 16 * u64::from(count))?;
+            self.points.insert(trace.packed, points);
+        }
+        Ok(())
     }
 }
 
 impl Morph {
-    pub fn new(device: &Arc<Device>, mode: RecordMode, brute_force: bool) -> Result<Morph> {
-        let mut defines = mode.defines();
-        let morph = ComputePipeline::new(device, "reflection_morphing/morph.wgsl", &defines)?;
-        if brute_force {
-            defines.push(("BRUTE_FORCE", 1));
-        }
-        let look_up = ComputePipeline::new(device, "reflection_morphing/look_up.wgsl", &defines)?;
-        Ok(Morph { look_up, morph })
+    /// `defines` say how to look up and how to weigh, and what is recorded.
+    pub fn new(device: &Arc<Device>, defines: Defines) -> Result<Morph> {
+        let pipeline = |file| ComputePipeline::new(device, file, defines);
+        Ok(Morph {
+            look_up: pipeline("reflection_morphing/look_up.wgsl")?,
+            morph: pipeline("reflection_morphing/morph.wgsl")?,
+        })
     }
 
-    /// Look up all that moves, and what stands still in octrees that were not asked yet.
+    /// Look up by one trace all that moves, and what stands still in octrees that were not asked yet.
     pub fn look_up(
         &self,
         frame: &mut Frame,
         scene: &GpuScene,
-        (source, vertices): (&Source, &Vertices),
-        nodes: &Nodes,
-        mirror: &Mirror,
+        (source, vertices): (&Source, &mut Vertices),
+        nodes: &mut Nodes,
+        trace: Trace,
         record: &ReflectionRecord,
     ) -> Result<()> {
-        for (slot, node) in nodes.slots.iter().enumerate() {
+        vertices.make_room(&frame.device().clone(), trace, source.count)?;
+        let map = nodes.map();
+        for (slot, node) in nodes.slots.iter_mut().enumerate() {
             let Some(node) = node else { continue };
             let first = slot as u32 * source.count;
             let mut ask = |name, places: &Places| {
                 let look_up =
-                    LookUpStruct { total: places.count, first, reflector: mirror.object, pad: 0 };
+                    LookUpStruct { total: places.count, first, reflector: trace.last, pad: 0 };
                 let pass = frame.pass(name).compute(&self.look_up);
                 let pass = record.bind_counters(scene.bind(pass));
-                node.bind(pass, mirror)
+                node.bind(pass, trace, map)
                     .storage_struct("look_up", &look_up)
                     .buffer("vertices", &source.vertices)
                     .buffer("owners", &source.owners)
                     .buffer("asked", &places.buffer)
-                    .buffer("points", &vertices.points[mirror.place])
+                    .buffer("points", &vertices.points[&trace.packed])
                     .over(places.count)
             };
-            if !node.is_asked && vertices.still.count > 0 {
+            if !node.asked.contains(&trace.packed) && vertices.still.count > 0 {
                 ask("reflection-morphing/look-up-still", &vertices.still)?;
             }
             if vertices.moving.count > 0 {
                 ask("reflection-morphing/look-up-moving", &vertices.moving)?;
             }
+            node.asked.insert(trace.packed);
         }
         Ok(())
     }
@@ -158,15 +158,15 @@ impl Morph {
         scene: &GpuScene,
         (source, vertices): (&Source, &Vertices),
         corners: &[grid::Corner; 8],
-        mirror: &Mirror,
+        trace: Trace,
         (view, record): (&View, &ReflectionRecord),
     ) -> Result<()> {
         let morph = MorphStruct {
             weights: corners.map(|corner| corner.weight),
             total: source.count,
-            reflector: mirror.object,
-            pad_a: 0,
-            pad_b: 0,
+            reflector: trace.last,
+            order: trace.order,
+            pad: 0,
         };
         let pass = frame.pass("reflection-morphing/morph").compute(&self.morph);
         record
@@ -175,20 +175,22 @@ impl Morph {
             .uniform("camera", &view.camera)
             .buffer("vertices", &source.vertices)
             .buffer("owners", &source.owners)
-            .buffer("points", &vertices.points[mirror.place])
+            .buffer("points", &vertices.points[&trace.packed])
             .buffer("corners", &vertices.corners)
             .over(source.count)
     }
 }
 
 impl Node {
-    /// Bind it, to be asked for rays that met one reflector.
-    fn bind<'f>(&self, pass: Pass<'f>, mirror: &Mirror) -> Pass<'f> {
+    /// Bind it, with maps whose faces are `map` texels wide, to be asked for rays of one trace.
+    fn bind<'f>(&self, pass: Pass<'f>, trace: Trace, map: u32) -> Pass<'f> {
         let octree = OctreeStruct {
             low: self.extent.low.to_array(),
-            trace: Ids::extended(0, 0, mirror.rank),
+            trace: trace.packed,
             high: self.extent.high.to_array(),
             segments: self.segment_count,
+            map,
+            pads: [0; 3],
         };
         pass.storage_struct("octree", &octree)
             .buffer("cells", &self.cells)
@@ -198,6 +200,8 @@ impl Node {
             .buffer("lists", &self.lists)
             .optional()
             .buffer("segments", &self.segments)
+            .buffer("ray_map", &self.map)
+            .optional()
     }
 }
 
@@ -210,10 +214,11 @@ mod tests {
     #[test]
     #[rustfmt::skip]
     fn structs_are_laid_out_as_their_wgsl_twins() {
-        assert_layout!("reflection_morphing/look_up.wgsl", "Octree", OctreeStruct, low, trace, high, segments);
+        assert_layout!("reflection_morphing/look_up.wgsl", "Octree", OctreeStruct,
+            low, trace, high, segments, map);
         assert_layout!("reflection_morphing/look_up.wgsl", "RaySegment", RaySegment, start, trace, end, texel);
         assert_layout!("reflection_morphing/look_up.wgsl", "LookUp", LookUpStruct, total, first, reflector, pad);
         assert_layout!("reflection_morphing/morph.wgsl", "Morph", MorphStruct,
-            weights, total, reflector, pad_a, pad_b);
+            weights, total, reflector, order, pad);
     }
 }

@@ -1,5 +1,6 @@
 //! The eight ray octrees round the eye, brought to the device as the eye goes from cell to cell.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::IVec3;
@@ -8,6 +9,7 @@ use super::file::{self, Recipe};
 use super::grid::{Corner, Grid};
 use super::ray_map::RayMapper;
 use crate::error::Result;
+use crate::geometry::ray_bundle::RayTable;
 use crate::geometry::ray_octree::{Extent, RayOctree};
 use crate::gpu::{Buffer, Device};
 use crate::scene::{Moment, Scene};
@@ -22,8 +24,12 @@ pub struct Node {
     pub lists: Buffer,
     pub segments: Buffer,
     pub segment_count: u32,
-    /// Whether the still vertices were looked up in it.
-    pub is_asked: bool,
+    /// The ray map; where no look-up needs it, empty.
+    pub map: Buffer,
+    /// Those of its rays.
+    traces: BTreeSet<u32>,
+    /// Those by which the still vertices were looked up in it.
+    pub asked: BTreeSet<u32>,
 }
 
 /// Those of one sampling cell.
@@ -32,12 +38,24 @@ pub struct Nodes {
     grid: Grid,
     /// Where octrees are kept; none of reflectors that move, as no later frame would want them.
     files: Option<Cache>,
+    /// Look-ups go from ray to ray of the map.
+    mapped: bool,
     pub slots: [Option<Node>; 8],
 }
 
 impl Nodes {
-    pub fn new(recipe: Recipe, grid: Grid, files: Option<Cache>) -> Nodes {
-        Nodes { recipe, grid, files, slots: Default::default() }
+    pub fn new(recipe: Recipe, grid: Grid, files: Option<Cache>, mapped: bool) -> Nodes {
+        Nodes { recipe, grid, files, mapped, slots: Default::default() }
+    }
+
+    /// Texels along a side of the ray maps' faces.
+    pub fn map(&self) -> u32 {
+        self.recipe.map
+    }
+
+    /// Whether any of them has rays of a trace.
+    pub fn know(&self, trace: u32) -> bool {
+        self.slots.iter().flatten().any(|node| node.traces.contains(&trace))
     }
 
     /// Forget all: the reflectors are others.
@@ -63,7 +81,7 @@ impl Nodes {
                 // What is there goes first, so that there are never more than eight.
                 self.slots[slot] = None;
                 let octree = self.octree(scene, moment, corner.node, &mut mapper)?;
-                self.slots[slot] = Some(Node::upload(device, corner.node, &octree)?);
+                self.slots[slot] = Some(self.upload(device, corner.node, &octree)?);
             }
         }
         Ok(())
@@ -95,10 +113,10 @@ impl Nodes {
         files.keep(&path, &file::encode(&octree, &key))?;
         Ok(octree)
     }
-}
 
-impl Node {
-    fn upload(device: &Arc<Device>, place: IVec3, octree: &RayOctree) -> Result<Node> {
+    fn upload(&self, device: &Arc<Device>, place: IVec3, octree: &RayOctree) -> Result<Node> {
+        let Recipe { map, layers, .. } = self.recipe;
+        let table = self.mapped.then(|| RayTable::new(&octree.segments, map, layers).places);
         Ok(Node {
             place,
             extent: octree.extent,
@@ -107,7 +125,9 @@ impl Node {
             lists: Buffer::with_data(device, "octree lists", &octree.lists)?,
             segments: Buffer::with_data(device, "octree rays", &octree.segments)?,
             segment_count: octree.segments.len() as u32,
-            is_asked: false,
+            map: Buffer::with_data(device, "ray map", &table.unwrap_or_default())?,
+            traces: octree.segments.iter().map(|segment| segment.trace).collect(),
+            asked: BTreeSet::new(),
         })
     }
 }

@@ -1,6 +1,7 @@
 //! What can be chosen, and what had to be: the paper states neither cell size nor edge length.
 
 use crate::methods::{Kind, Param};
+use crate::scene::record::TRACE_BOUNCES;
 
 pub const PARAMS: &[Param] = &[
     Param {
@@ -16,6 +17,20 @@ pub const PARAMS: &[Param] = &[
         defaults: &["5"],
         needs: None,
         doc: "how often a cell of an octree may be split (4.2; section 8 has 5)",
+    },
+    Param {
+        name: "bounces",
+        kind: Kind::Integer { min: 1, max: TRACE_BOUNCES as i64 },
+        defaults: &["1"],
+        needs: None,
+        doc: "longest chain of mirrors, and layers of ray maps (4.1; section 8 has 1)",
+    },
+    Param {
+        name: "traces",
+        kind: Kind::Choice(&["apart", "mixed"]),
+        defaults: &["apart"],
+        needs: Some(("bounces", &["2", "3", "4"])),
+        doc: "a vertex has one projection by each chain of mirrors, and triangles never join two; or one by               the nearest ray of any",
     },
     Param {
         name: "still",
