@@ -52,10 +52,10 @@ struct Bins {
 const BLOCK: u32 = 1024u;
 
 struct Bundle {
-    // Of four rays, row by row; none where any lacks.
+    // Of four rays, row by row.
     origins: array<vec3<f32>, 4>,
     directions: array<vec3<f32>, 4>,
-    length: f32,
+    // False where any lacks.
     is_whole: bool,
 }
 
@@ -64,14 +64,37 @@ fn bundle_between(a: EyeRay, b: EyeRay, c: EyeRay, d: EyeRay) -> Bundle {
     return Bundle(
         array(a.origin, b.origin, c.origin, d.origin),
         array(a.direction, b.direction, c.direction, d.direction),
-        max(max(a.length, b.length), max(c.length, d.length)),
         all(kinds != vec4(RAY_NONE)) && any(kinds == vec4(RAY_LEAVES)) && (a.kind & TORN) == 0u,
     );
 }
 
-// Whether a texel begins a bundle: those of the last row and column do not.
-fn begins(texel: u32) -> bool {
-    return texel < bins.size * (bins.size - 1u) && texel % bins.size + 1u < bins.size;
+// Bundles along a side of a sheaf; cells list sheaves.
+const SHEAF: u32 = 4u;
+
+// What all rays of a sheaf lie between, with the same length from the reflector: l metres from it those are
+// in the box from `low` + l `low_slope` to `high` + l `high_slope`.
+struct Sheaf {
+    low: vec3<f32>,
+    // 0 without any.
+    rays: u32,
+    high: vec3<f32>,
+    // Of the longest, metres.
+    length: f32,
+    low_slope: vec3<f32>,
+    pad_a: u32,
+    high_slope: vec3<f32>,
+    pad_b: u32,
+}
+
+// Along a side of the textures.
+fn sheaves_a_side() -> u32 {
+    return (bins.size - 1u + SHEAF - 1u) / SHEAF;
+}
+
+// The texel of a sheaf's first bundle.
+fn corner_of(sheaf: u32) -> vec2<u32> {
+    let side = sheaves_a_side();
+    return SHEAF * vec2(sheaf % side, sheaf / side);
 }
 
 // The least cube that holds a point so far from the middle, along the axis along which that is farthest; the

@@ -38,15 +38,31 @@ struct RayStruct {
     length: f32,
 }
 
+/// WGSL `Sheaf`.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct SheafStruct {
+    low: [f32; 3],
+    rays: u32,
+    high: [f32; 3],
+    length: f32,
+    low_slope: [f32; 3],
+    pad_a: u32,
+    high_slope: [f32; 3],
+    pad_b: u32,
+}
+
 /// Cells along a side of each cube.
-const SIDE: u32 = 32;
+const SIDE: u32 = 16;
 /// Most cubes: a block of cells each invocation of the last sum adds up.
 const MOST_LEVELS: u32 = 7;
+/// WGSL `SHEAF`: bundles along a side of what cells list.
+const SHEAF: u32 = 4;
 /// WGSL `BLOCK`.
 const BLOCK: u32 = 1024;
 
-/// Entries that lists have room for, by bundle; about three times what was seen, where the device allows it.
-const ENTRIES_A_BUNDLE: u64 = 128;
+/// Entries that lists have room for, by sheaf; several times what was seen, where the device allows it.
+const ENTRIES_A_SHEAF: u64 = 512;
 
 /// Pipelines and lists.
 pub struct Bins {
@@ -57,6 +73,7 @@ pub struct Bins {
     gbuffer: GBuffer,
     /// One of each texel.
     rays: Buffer,
+    sheaves: Buffer,
     counts: Buffer,
     /// Where each cell's list begins, within its block and for each block.
     starts: Buffer,
@@ -89,7 +106,8 @@ impl Bins {
         };
         let texels = u64::from(size) * u64::from(size);
         let words = |name, words: u64| Buffer::storage(device, name, 4 * words);
-        let room = (ENTRIES_A_BUNDLE * texels).min(device.storage_limit() / 4);
+        let sheaves = u64::from((size - 1).div_ceil(SHEAF).pow(2));
+        let room = (ENTRIES_A_SHEAF * sheaves).min(device.storage_limit() / 4);
         // One block more, so that every list ends where another begins.
         let cells = u64::from(MOST_LEVELS * SIDE.pow(3) + BLOCK);
         Ok(Bins {
@@ -99,6 +117,7 @@ impl Bins {
             fill: pipeline("eye_list", Some("FILL"))?,
             gbuffer: GBuffer::new(device, [size; 2], Format::Rgba32Float)?,
             rays: Buffer::storage(device, "eye's rays", size_of::<RayStruct>() as u64 * texels)?,
+            sheaves: Buffer::storage(device, "sheaves", size_of::<SheafStruct>() as u64 * sheaves)?,
             counts: words("bundles of cells", cells)?,
             starts: words("cells' lists", cells)?,
             blocks: words("blocks' lists", 256)?,
@@ -134,7 +153,8 @@ impl Bins {
         frame.pass("reflection-morphing/clear").fill(&[&self.counts], 0)?;
         let pass = frame.pass("reflection-morphing/count").compute(&self.count);
         let count = pass.storage_struct("bins", &bins).buffer("rays", &self.rays);
-        count.buffer("counts", &self.counts).over(self.size * self.size)?;
+        let sheaves = (self.size - 1).div_ceil(SHEAF).pow(2);
+        count.buffer("sheaves", &self.sheaves).buffer("counts", &self.counts).over(sheaves)?;
         let cells = bins.levels * SIDE.pow(3) + BLOCK;
         for (sum, invocations) in self.sum.iter().zip([cells / 4, 1]) {
             let pass = frame.pass("reflection-morphing/sum").compute(sum);
@@ -145,14 +165,19 @@ impl Bins {
         }
         let pass = frame.pass("reflection-morphing/fill").compute(&self.fill);
         let pass = pass.storage_struct("bins", &bins).buffer("counts", &self.counts);
-        self.bind(pass).over(self.size * self.size)?;
+        self.bind(pass).over(sheaves)?;
         Ok(bins)
     }
 
     /// Bind rays and lists.
     pub fn bind<'f>(&self, pass: Pass<'f>) -> Pass<'f> {
-        let lists = [("starts", &self.starts), ("blocks", &self.blocks), ("lists", &self.lists)];
-        let pass = pass.buffer("rays", &self.rays);
+        let lists = [
+            ("rays", &self.rays),
+            ("sheaves", &self.sheaves),
+            ("starts", &self.starts),
+            ("blocks", &self.blocks),
+            ("lists", &self.lists),
+        ];
         lists.into_iter().fold(pass, |pass, (name, list)| pass.buffer(name, list).optional())
     }
 
@@ -192,5 +217,7 @@ mod tests {
         assert_layout!("reflection_morphing/eye_list.wgsl", "Bins", BinsStruct,
             low, size, high, side, centre, half, levels, room, reflector, lobe);
         assert_layout!("reflection_morphing/eye_list.wgsl", "EyeRay", RayStruct, origin, kind, direction, length);
+        assert_layout!("reflection_morphing/eye_list.wgsl", "Sheaf", SheafStruct,
+            low, rays, high, length, low_slope, pad_a, high_slope, pad_b);
     }
 }

@@ -14,6 +14,8 @@
 //! that hold a vertex (hollow mirrors) the one of the shortest path is taken.
 
 mod bins;
+#[cfg(test)]
+mod tests;
 
 use crate::error::Result;
 use crate::geometry::ray_octree::Extent;
@@ -21,7 +23,7 @@ use crate::gpu::{Buffer, ComputePipeline, Frame};
 use crate::methods::reflected::{Corner, Reflected};
 use crate::methods::source::{Lists, Source};
 use crate::methods::{ReflectionMethod, Setup, Want};
-use crate::stages::{GpuScene, MirroredEnvironment, ReflectionRecord, View};
+use crate::stages::{CameraUniform, GpuScene, MirroredEnvironment, ReflectionRecord, View};
 
 use bins::{Bins, BinsStruct, Mirror};
 
@@ -66,7 +68,7 @@ impl EyeNode {
         &self,
         frame: &mut Frame,
         scene: &GpuScene,
-        (view, record): (&View, &ReflectionRecord),
+        (camera, record): (&CameraUniform, &ReflectionRecord),
         bins: &BinsStruct,
         (source, corners): (&Source, &Buffer),
     ) -> Result<()> {
@@ -74,7 +76,7 @@ impl EyeNode {
         let pass = record.bind_counters(scene.bind(pass)).storage_struct("bins", bins);
         self.bins
             .bind(pass)
-            .uniform("camera", &view.camera)
+            .uniform("camera", camera)
             .buffer("vertices", &source.vertices)
             .buffer("owners", &source.owners)
             .buffer("corners", corners)
@@ -111,7 +113,7 @@ impl ReflectionMethod for EyeNode {
             let mirror = Mirror { object, lobe: view.lobe };
             let bins = self.bins.build(frame, scene, &view.camera, &mirror, record)?;
             let drawn = (source, corners);
-            self.project(frame, scene, (view, record), &bins, drawn)?;
+            self.project(frame, scene, (&view.camera, record), &bins, drawn)?;
             let name = "reflection-morphing";
             self.reflected.draw(frame, scene, name, (view, record), object, drawn)?;
         }
