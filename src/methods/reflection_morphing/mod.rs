@@ -14,6 +14,7 @@
 //! the eight ("these vertices must only be morphed once for each sampling cell", section 8): a node that two
 //! cells share is not asked again.
 
+mod eye;
 pub mod file;
 pub mod grid;
 mod morph;
@@ -61,11 +62,18 @@ pub const INFO: MethodInfo = MethodInfo {
         "reflection-morphing/look-up-still",
         "reflection-morphing/look-up-moving",
         "reflection-morphing/morph",
+        "reflection-morphing/gbuffer",
+        "reflection-morphing/rays",
+        "reflection-morphing/clear",
+        "reflection-morphing/count",
+        "reflection-morphing/sum",
+        "reflection-morphing/fill",
+        "reflection-morphing/project",
         "reflection-morphing/reflected",
         "reflection-morphing/shown",
         "reflection-morphing/shown-background",
     ],
-    counters: &["look-ups", "rays", "valid"],
+    counters: &["look-ups", "rays", "valid", "entries", "no-room"],
     new: Some(new),
 };
 
@@ -91,6 +99,10 @@ struct State {
 
 fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     let &Setup { device, mode, values, .. } = setup;
+    if values.is("nodes", "eye") {
+        let extent = ray_map::extent(&setup.scene.scene);
+        return Ok(Box::new(eye::EyeNode::new(setup, extent)?));
+    }
     if matches!(setup.scene.scene.camera.at(0.0).projection, Projection::Orthographic { .. }) {
         return Err(Error::Usage(
             "reflection-morphing traces rays from where an eye can be; parallel rays meet in no eye; \

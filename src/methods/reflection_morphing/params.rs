@@ -3,19 +3,29 @@
 use crate::methods::{Kind, Param};
 use crate::scene::record::TRACE_BOUNCES;
 
+/// For what nodes at the eye do without.
+const GRID: Option<(&str, &[&str])> = Some(("nodes", &["grid"]));
+
 pub const PARAMS: &[Param] = &[
+    Param {
+        name: "nodes",
+        kind: Kind::Choice(&["grid", "eye"]),
+        defaults: &["grid"],
+        needs: None,
+        doc: "where rays are traced from: a grid's nodes, beforehand (section 3); or the eye, in every frame",
+    },
     Param {
         name: "map",
         kind: Kind::Integer { min: 8, max: 2048 },
         defaults: &["256"],
         needs: None,
-        doc: "texels along a side of a ray map's faces (4.1; section 8 has 256)",
+        doc: "texels along a side of a ray map's faces (4.1; section 8 has 256); nodes=eye: of the reflector's textures",
     },
     Param {
         name: "depth",
         kind: Kind::Integer { min: 0, max: 10 },
         defaults: &["5"],
-        needs: None,
+        needs: GRID,
         doc: "how often a cell of an octree may be split (4.2; section 8 has 5)",
     },
     Param {
@@ -36,14 +46,14 @@ pub const PARAMS: &[Param] = &[
         name: "still",
         kind: Kind::Choice(&["out", "in"]),
         defaults: &["out"],
-        needs: None,
+        needs: GRID,
         doc: "diffuse objects that never move: left out of what rays meet, or in, so that they end rays (4.1)",
     },
     Param {
         name: "cell",
         kind: Kind::Real { min: 0.01, max: 100.0 },
         defaults: &["0.5"],
-        needs: None,
+        needs: GRID,
         doc: "metres between sampling locations (section 3; unstated)",
     },
     Param {
@@ -58,13 +68,14 @@ pub const PARAMS: &[Param] = &[
         kind: Kind::Choice(&["octree", "brute-force"]),
         defaults: &["octree"],
         needs: None,
-        doc: "the nearest ray: of those in the vertex's leaf, or of all (section 1.2)",
+        doc: "the nearest ray: of those in the vertex's leaf, or of all (section 1.2); nodes=eye: the bundle of rays it is \
+              in, of those its cell lists, or of all",
     },
     Param {
         name: "files",
         kind: Kind::Choice(&["kept", "none"]),
         defaults: &["kept"],
-        needs: None,
+        needs: GRID,
         doc: "octrees of reflectors that stand still are kept on disk (4.2), or built in every run",
     },
 ];

@@ -90,7 +90,7 @@ impl<'s> RayMapper<'s> {
 }
 
 /// "A bounding box of the scene" (section 1.2), wherever things move to.
-fn extent(scene: &Scene) -> Extent {
+pub fn extent(scene: &Scene) -> Extent {
     let moving: Vec<ObjectId> =
         (0..scene.objects.len() as ObjectId).filter(|&object| scene.is_moving(object)).collect();
     let (mut low, mut high) = scene.bounds(&scene.at(0));

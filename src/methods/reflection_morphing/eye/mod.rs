@@ -1,0 +1,122 @@
+//! Reflection morphing without its preprocess (`nodes=eye`): one sampling location, the eye itself, its rays made
+//! on the device in every frame. Nothing is left to interpolate between, nothing is kept, and reflectors may
+//! move: "it might also be extended to allow moving reflectors" (Martin & Popescu 2004, section 9).
+//!
+//! The first hit is drawn: a texture of the reflector's points and normals gives a ray a texel. Four neighbours are
+//! a bundle, and a vertex is projected by the bundle it lies in, between its rays: an octree's nearest ray is
+//! constant from ray to ray, which shows as steps. Cells list the bundles that cross them; which of a cell's
+//! bundles is taken does not depend on the list's order, so a frame is the same bit for bit whatever the order
+//! in which the device fills lists.
+//!
+//! Choices of ours: cells are those of cubes about the reflector, each twice the size of the last, since rays part
+//! as they go; the eye's own rays that just miss the reflector take part, so that bundles reach to the border of
+//! what it hides, where light only grazes it; bundles across a jump in depth are left out; of several bundles
+//! that hold a vertex (hollow mirrors) the one of the shortest path is taken.
+
+mod bins;
+#[cfg(test)]
+mod tests;
+
+use crate::error::Result;
+use crate::geometry::ray_octree::Extent;
+use crate::gpu::{Buffer, ComputePipeline, Frame};
+use crate::methods::reflected::{Corner, Reflected};
+use crate::methods::source::{Lists, Source};
+use crate::methods::{ReflectionMethod, Setup, Want};
+use crate::stages::{CameraUniform, GpuScene, MirroredEnvironment, ReflectionRecord, View};
+
+use bins::{Bins, BinsStruct, Mirror};
+
+pub struct EyeNode {
+    /// Longest edge of diffuse meshes, metres; 0 as modelled.
+    edge: f32,
+    bins: Bins,
+    environment: MirroredEnvironment,
+    project: ComputePipeline,
+    reflected: Reflected,
+    /// What is reflected, and the [`Corner`]s found for the reflector at hand; made by the first `prepare`.
+    state: Option<(Source, Buffer)>,
+}
+
+impl EyeNode {
+    /// `extent`: what rays are clipped with.
+    ///
+    /// # Errors
+    /// As of pipelines, images and lists.
+    pub fn new(setup: &Setup, extent: Extent) -> Result<EyeNode> {
+        let &Setup { device, mode, values, .. } = setup;
+        let mut defines = mode.defines();
+        if values.is("lookup", "brute-force") {
+            defines.push(("BRUTE_FORCE", 1));
+        }
+        let project =
+            ComputePipeline::new(device, "reflection_morphing/eye_project.wgsl", &defines)?;
+        let mut defines = mode.defines();
+        defines.push(("TWO_SIDED", 1));
+        Ok(EyeNode {
+            edge: values.f32("subdivide"),
+            bins: Bins::new(device, mode, values.u32("map"), extent)?,
+            environment: MirroredEnvironment::new(device, mode)?,
+            project,
+            reflected: Reflected::new(device, mode, &defines, 0.0)?,
+            state: None,
+        })
+    }
+
+    /// Find where a reflector shows each vertex, by its rays.
+    fn project(
+        &self,
+        frame: &mut Frame,
+        scene: &GpuScene,
+        (camera, record): (&CameraUniform, &ReflectionRecord),
+        bins: &BinsStruct,
+        (source, corners): (&Source, &Buffer),
+    ) -> Result<()> {
+        let pass = frame.pass("reflection-morphing/project").compute(&self.project);
+        let pass = record.bind_counters(scene.bind(pass)).storage_struct("bins", bins);
+        self.bins
+            .bind(pass)
+            .uniform("camera", camera)
+            .buffer("vertices", &source.vertices)
+            .buffer("owners", &source.owners)
+            .buffer("corners", corners)
+            .over(source.count)
+    }
+}
+
+impl ReflectionMethod for EyeNode {
+    fn prepare(&mut self, frame: &mut Frame, scene: &GpuScene, _: &Want) -> Result<()> {
+        if self.state.is_none() {
+            let device = frame.device().clone();
+            let edge = self.edge;
+            let lists =
+                frame.cpu("reflection-morphing/subdivide", || Lists::new(&scene.scene, edge))?;
+            let source = lists.upload(&device)?;
+            let bytes = size_of::<Corner>() as u64 * u64::from(source.count.max(1));
+            self.state = Some((source, Buffer::storage(&device, "projected corners", bytes)?));
+        }
+        Ok(())
+    }
+
+    fn reflect(
+        &mut self,
+        frame: &mut Frame,
+        scene: &GpuScene,
+        view: &View,
+        record: &mut ReflectionRecord,
+    ) -> Result<()> {
+        let Some((source, corners)) = &self.state else { return Ok(()) };
+        source.pose(frame, scene, "reflection-morphing")?;
+        self.environment.fill(frame, scene, "reflection-morphing", view, record)?;
+        let record = &*record;
+        for &object in view.reflectors {
+            let mirror = Mirror { object, lobe: view.lobe };
+            let bins = self.bins.build(frame, scene, &view.camera, &mirror, record)?;
+            let drawn = (source, corners);
+            self.project(frame, scene, (&view.camera, record), &bins, drawn)?;
+            let name = "reflection-morphing";
+            self.reflected.draw(frame, scene, name, (view, record), object, drawn)?;
+        }
+        Ok(())
+    }
+}
