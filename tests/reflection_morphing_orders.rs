@@ -23,7 +23,7 @@ fn between_spheres() -> Scene {
 /// Of the pixels whose light met so many mirrors: their share, and of those what is over a pixel off.
 fn of_order(accuracy: &Accuracy, order: u32) -> (f64, f64) {
     let row = accuracy.by_order.iter().find(|row| row.order == order).unwrap();
-    (row.share, row.bad_share.one)
+    (row.group.share, row.group.bad_share.one)
 }
 
 #[test]

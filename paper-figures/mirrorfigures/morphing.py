@@ -54,7 +54,7 @@ def morphed(scene: str, frame: int, size: str) -> Morphed:
     corners = corners.reshape(-1, 8).view(np.float32)
     points = points.view(np.float32).reshape(8, -1, 4)
     eye = camera(scene, frame, size).eye
-    seen = (points[:, :, 3] == 1).all(0)
+    seen = (points[:, :, 3] != 0).all(0)
     return Morphed(
         run, eye, corners[:, :3], corners[:, 4:7], seen, points[:, :, :3], triangles.reshape(-1, 3)
     )

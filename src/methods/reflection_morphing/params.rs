@@ -32,7 +32,7 @@ pub const PARAMS: &[Param] = &[
         name: "bounces",
         kind: Kind::Integer { min: 1, max: TRACE_BOUNCES as i64 },
         defaults: &["1"],
-        needs: None,
+        needs: GRID,
         doc: "longest chain of mirrors, and layers of ray maps (4.1; section 8 has 1)",
     },
     Param {
