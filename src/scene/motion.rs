@@ -3,7 +3,7 @@
 use glam::{Affine3A, Quat, Vec3};
 
 use super::{CameraPath, Moment, Motion, ObjectId, Scene};
-use crate::geometry::Camera;
+use crate::geometry::{Camera, Mesh};
 
 impl Scene {
     /// The scene at a frame. Orbits go on beyond the last frame, key frames hold.
@@ -60,10 +60,14 @@ impl Scene {
 
     /// The world positions of an object's vertices at a moment, or of the closed partner it has.
     pub fn closed_points_of(&self, moment: &Moment, object: ObjectId) -> Vec<Vec3> {
-        let pose = moment.poses[object as usize];
         let own = &self.objects[object as usize];
         let mesh = self.shape_at(moment, own.closed.unwrap_or(own.mesh));
-        mesh.positions.iter().map(|&p| pose.transform_point3(p)).collect()
+        posed(&mesh, moment, object)
+    }
+
+    /// The vertices of an object itself in the world at a moment.
+    pub fn points_of(&self, moment: &Moment, object: ObjectId) -> Vec<Vec3> {
+        posed(&self.mesh_at(moment, object), moment, object)
     }
 
     /// The centroid of the surface whose points [`Scene::closed_points_of`] gives, in object space.
@@ -95,6 +99,12 @@ impl Motion {
             }
         }
     }
+}
+
+/// A mesh's vertices where its object is, world.
+fn posed(mesh: &Mesh, moment: &Moment, object: ObjectId) -> Vec<Vec3> {
+    let pose = moment.poses[object as usize];
+    mesh.positions.iter().map(|&p| pose.transform_point3(p)).collect()
 }
 
 impl CameraPath {

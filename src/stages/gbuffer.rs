@@ -59,6 +59,20 @@ impl GBuffer {
             .draw(|draw| scene.draw_closed(draw, reflector))
     }
 
+    /// The same of the reflector itself, whether it has a partner or not.
+    pub fn draw_open(
+        &self,
+        frame: &mut Frame,
+        scene: &GpuScene,
+        name: &str,
+        reflector: ObjectId,
+        camera: &CameraUniform,
+    ) -> Result<()> {
+        let pass = frame.pass(&format!("{name}/gbuffer")).graphics(&self.surfaces);
+        self.attach(scene.bind(pass).uniform("camera", camera))
+            .draw(|draw| scene.draw_object(draw, reflector))
+    }
+
     /// Draw something else into it, in a pass whose shader has the same two targets.
     pub fn attach<'f>(&'f self, pass: Pass<'f>) -> Pass<'f> {
         let clear = Load::Clear([0.0; 4]);

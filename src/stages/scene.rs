@@ -209,9 +209,7 @@ impl GpuScene {
 
     /// The objects that have an inside.
     pub fn closed(&self) -> Vec<ObjectId> {
-        (0..self.scene.objects.len() as ObjectId)
-            .filter(|&object| self.closed[self.scene.objects[object as usize].mesh])
-            .collect()
+        (0..self.scene.objects.len() as ObjectId).filter(|&object| self.is_closed(object)).collect()
     }
 
     /// Bind what a shader wants of the scene.
@@ -243,6 +241,11 @@ impl GpuScene {
     /// First index and index count of an object.
     fn range(&self, object: ObjectId) -> (u32, u32) {
         self.ranges[self.scene.objects[object as usize].mesh]
+    }
+
+    /// Whether an object's own mesh is watertight.
+    pub fn is_closed(&self, object: ObjectId) -> bool {
+        self.closed[self.scene.objects[object as usize].mesh]
     }
 
     /// First index and index count of an object, or of the closed partner it has.

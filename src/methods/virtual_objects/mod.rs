@@ -28,6 +28,7 @@ mod refraction;
 mod rule;
 mod search;
 mod second;
+mod skirt;
 mod split;
 #[cfg(test)]
 mod tests;
@@ -35,7 +36,7 @@ mod tests;
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::gpu::{Device, Frame};
+use crate::gpu::{Device, Format, Frame};
 use crate::scene::{Lobe, ObjectId, Scene};
 use crate::stages::{
     CameraUniform, GBuffer, GpuScene, MirroredEnvironment, RecordMode, ReflectionRecord, View,
@@ -50,6 +51,7 @@ use refraction::Refraction;
 use rule::Rule;
 use search::{Found, Mirror, Search};
 use second::{Before, Second};
+use skirt::Skirt;
 use split::Split;
 
 pub const INFO: MethodInfo = MethodInfo {
@@ -73,6 +75,7 @@ pub const INFO: MethodInfo = MethodInfo {
         "footprint/list",
         "virtual-objects/background",
         "virtual-objects/gbuffer",
+        "virtual-objects/skirt",
         "virtual-objects/start",
         "virtual-objects/cells",
         "virtual-objects/search",
@@ -96,6 +99,8 @@ struct VirtualObjects {
     size: [u32; 2],
     environment: MirroredEnvironment,
     gbuffer: GBuffer,
+    /// What carries open reflectors on in it.
+    skirt: Option<Skirt>,
     /// Where these are searched.
     cubes: Option<CubeMaps>,
     search: Search,
@@ -119,9 +124,14 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     let rule = Rule::new(setup.values);
     let texels = rule.texture_size(size);
     let cubes = rule.cube.map(|cube| CubeMaps::new(device, cube, rule.format));
+    let is_open = |&mirror: &ObjectId| !setup.scene.is_closed(mirror);
+    let skirted = rule.skirt > 0.0 && setup.reflectors.iter().any(is_open);
+    let skirt = skirted.then(|| Skirt::new(device, texels, rule.format, rule.skirt));
+    let format = if skirted { Format::Rgba32Float } else { rule.format };
     Ok(Box::new(VirtualObjects {
         environment: MirroredEnvironment::new(device, mode)?,
-        gbuffer: GBuffer::new(device, texels, rule.format)?,
+        gbuffer: GBuffer::new(device, texels, format)?,
+        skirt: skirt.transpose()?,
         cubes: cubes.transpose()?,
         search: Search::new(device, &rule, mode, texels)?,
         drawing: Drawing::new(device, &rule, mode)?,
@@ -172,7 +182,9 @@ impl ReflectionMethod for VirtualObjects {
             if let Some(cubes) = &mut self.cubes {
                 cubes.draw(frame, scene, object)?;
             }
-            if self.cubes.is_none() || self.rule.clips {
+            if let Some(skirt) = self.skirt_of(scene, object) {
+                skirt.draw(frame, scene, object, &camera, gbuffer)?;
+            } else if self.cubes.is_none() || self.rule.clips {
                 gbuffer.draw(frame, scene, "virtual-objects", object, &camera)?;
             }
             let mirror = Mirror {
@@ -229,12 +241,27 @@ impl VirtualObjects {
         Ok(State { source, found, split: Some(split), second, refraction })
     }
 
+    /// What carries a reflector on, where it is open.
+    fn skirt_of(&self, scene: &GpuScene, object: ObjectId) -> Option<&Skirt> {
+        self.skirt.as_ref().filter(|_| !scene.is_closed(object))
+    }
+
     /// What the textures of a reflector are drawn with.
     fn camera(&self, scene: &GpuScene, view: &View, object: ObjectId) -> CameraUniform {
         if !self.rule.fitted {
             return view.camera.widened(self.rule.widening);
         }
-        let points = scene.scene.closed_points_of(scene.moment(), object);
-        view.camera.fitted(&points).unwrap_or_else(|| view.camera.widened(2.0))
+        let moment = scene.moment();
+        let wide = || view.camera.widened(2.0);
+        match self.skirt_of(scene, object) {
+            None => {
+                let points = scene.scene.closed_points_of(moment, object);
+                view.camera.fitted(&points).unwrap_or_else(wide)
+            }
+            Some(skirt) => {
+                let points = scene.scene.points_of(moment, object);
+                skirt.camera(view.camera.fitted(&points).unwrap_or_else(wide))
+            }
+        }
     }
 }

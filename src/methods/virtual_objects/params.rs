@@ -70,6 +70,14 @@ pub const PARAMS: &[Param] = &[
         doc: "how much more than the view the textures show, across and down (5.2; unstated)",
     },
     Param {
+        name: "skirt",
+        kind: Kind::Real { min: 0.0, max: 0.25 },
+        defaults: &["0"],
+        needs: SCREEN,
+        doc: "open reflectors: how far their surface is carried on beyond its edge, for searches that leave it there, \
+              as a share of the textures; 0: their closed partners are searched (5.1)",
+    },
+    Param {
         name: "precision",
         kind: Kind::Choice(&["fp32", "fp16"]),
         defaults: &["fp32"],

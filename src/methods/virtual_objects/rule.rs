@@ -14,6 +14,9 @@ pub struct Rule {
     /// Texels across the textures, where forced.
     texture: Option<u32>,
     pub widening: f32,
+    /// How far an open reflector is carried on, as a share of the textures; 0: its closed partner is
+    /// searched.
+    pub skirt: f32,
     pub format: Format,
     /// Searches look at cube maps, not at what the eye sees.
     pub cube: Option<CubeRule>,
@@ -68,6 +71,7 @@ impl Rule {
             fitted: values.is("frustum", "fitted"),
             texture: values.forced_u32("texture"),
             widening: values.f32("widening"),
+            skirt: if cube.is_none() { values.f32("skirt") } else { 0.0 },
             format: if fp16 { Format::Rgba16Float } else { Format::Rgba32Float },
             cube,
             forgets: !values.is("start", "previous"),
