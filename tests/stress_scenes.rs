@@ -107,3 +107,25 @@ fn the_sheet_turns_its_outside_then_its_inside_and_lies_in_its_partner() {
         assert!((middle.z - faces).abs() < 1e-5, "{middle} at {frame}");
     }
 }
+
+#[test]
+fn the_hollow_mirrors_are_a_cap_a_third_of_a_torus_and_a_saddle() {
+    let [dish, torus, saddle] = ["dish", "torus", "saddle"].map(|name| {
+        let scene = scene::load(name).unwrap();
+        let mirror = scene.reflectors()[0];
+        scene.mesh_of(mirror).clone()
+    });
+    // A cap of the sphere of 1 m about (0, 1, 0), 0.8 m across.
+    let centre = Vec3::Y;
+    assert!(dish.positions.iter().all(|p| (p.distance(centre) - 1.0).abs() < 1e-4));
+    let rim = dish.positions.iter().map(|p| p.x.hypot(p.z)).fold(0.0, f32::max);
+    assert!((rim - 0.4).abs() < 1e-5);
+    let off_torus = |p: &Vec3| (p.x.hypot(p.z) - 1.0).hypot(p.y) - 0.35;
+    assert!(torus.positions.iter().all(|p| off_torus(p).abs() < 1e-5));
+    let azimuth = |p: &Vec3| (-p.z).atan2(p.x).to_degrees();
+    let most = torus.positions.iter().map(azimuth).fold(0.0, f32::max);
+    assert!((most - 120.0).abs() < 1e-3);
+    // z up in the file is y up here, and y there is -z.
+    let height = |p: &Vec3| 0.4 * (p.x * p.x - p.z * p.z);
+    assert!(saddle.positions.iter().all(|p| (p.y - height(p)).abs() < 1e-6));
+}

@@ -8,7 +8,7 @@ struct Corner {
     pad: u32,
     // V', world.
     image: vec3<f32>,
-    // The texel found, halves: x | y << 14 | status << 28.
+    // The texel found, halves: x | y << 14 | status << 28 | branch << 30.
     found: u32,
 }
 
@@ -32,10 +32,19 @@ fn place_of(corner: Corner) -> vec2<f32> {
 }
 
 fn status_of(corner: Corner) -> u32 {
-    return corner.found >> 28u;
+    return (corner.found >> 28u) & 3u;
 }
 
 // Whether it has an image.
 fn is_seen(corner: Corner) -> bool {
     return status_of(corner) == SHOWN || status_of(corner) == BORDER;
+}
+
+// The branch of a corner that has several: whether the determinant of the law's slopes is above 0.
+fn packed_turn(positive: bool) -> u32 {
+    return select(0u, 1u << 30u, positive);
+}
+
+fn is_turned(corner: Corner) -> bool {
+    return (corner.found & (1u << 30u)) != 0u;
 }

@@ -3,6 +3,9 @@
 // in a pass of their own (`FAR`), as few do, and drivers that run both sides of a branch would pay for all.
 #import bindings::record::count
 #import virtual_objects::corner::{Corner, HIDDEN, LOST, is_seen, place_of, status_of}
+#ifdef ROOTS_ALL
+#import virtual_objects::branch::corner_on
+#endif
 #import virtual_objects::find::{
     border_between, border_corner, corner_of, hidden_corner, is_hidden, point_near, point_of, steps
 }
@@ -112,6 +115,22 @@ fn middle_of(ends: vec3<u32>, is_edge: bool) -> Middle {
     return triangle_middle(a, b, corners[ends.z]);
 }
 
+#ifdef ROOTS_ALL
+// In the branch of the span's corners.
+fn is_found(span: u32, m: Middle, corner: ptr<function, Corner>) -> bool {
+    *corner = corner_on(m.v, m.place, m.near);
+    return true;
+}
+
+fn is_to_cut(corner: Corner, m: Middle) -> bool {
+    // What ends between two corners of a branch has been cut before.
+    return is_seen(corner) && errs(corner, m);
+}
+#else
+fn is_to_cut(corner: Corner, m: Middle) -> bool {
+    return m.lost || !is_seen(corner) || errs(corner, m);
+}
+
 #ifdef FAR
 fn is_found(span: u32, m: Middle, corner: ptr<function, Corner>) -> bool {
     *corner = corner_of(m.v, point_of(m.v));
@@ -139,6 +158,7 @@ fn is_found(span: u32, m: Middle, corner: ptr<function, Corner>) -> bool {
     return false;
 }
 #endif
+#endif
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -159,7 +179,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let found = is_found(span, m, &corner);
     count(1u, steps);
     count(2u, evaluations);
-    if found && (m.lost || !is_seen(corner) || errs(corner, m)) {
+    if found && is_to_cut(corner, m) {
         if any(m.v != m.cut) {
             corner = hidden_corner(m.cut);
         }

@@ -11,6 +11,9 @@
 #ifdef SECOND
 #import virtual_objects::reflector::first_at
 #endif
+#ifdef ROOTS_ALL
+#import virtual_objects::reject::is_patch
+#endif
 
 // Steps that bring any start within a few texels home; most take three.
 const MOST_STEPS: u32 = 8u;
@@ -50,8 +53,13 @@ struct Patch {
 }
 
 fn is_whole(corner: vec2<i32>) -> bool {
+#ifdef ROOTS_ALL
+    // Where there is a pyramid of bounds, it knows, and of leaps between texels as well.
+    return is_patch(corner);
+#else
     return point_at(corner).w * point_at(corner + vec2(1, 0)).w
         * point_at(corner + vec2(0, 1)).w * point_at(corner + vec2(1, 1)).w == 1.0;
+#endif
 }
 
 // The patch at a place; at the reflector's rim the nearest whole one, carried on.
@@ -76,11 +84,15 @@ fn patch_at(place: vec2<f32>) -> Patch {
             return out;
         }
     }
+    return patch_in(corner, g - vec2<f32>(corner));
+}
+
+// The patch from a texel's centre on, at a place in it, from 0 to 1.
+fn patch_in(corner: vec2<i32>, f: vec2<f32>) -> Patch {
     let right = corner + vec2(1, 0);
     let below = corner + vec2(0, 1);
     let across = corner + vec2(1, 1);
-    let f = g - vec2<f32>(corner);
-    out = patch_between(
+    var out = patch_between(
         array(point_at(corner).xyz, point_at(right).xyz, point_at(below).xyz, point_at(across).xyz),
         array(normal_at(corner), normal_at(right), normal_at(below), normal_at(across)),
         f,
@@ -173,6 +185,28 @@ fn half_way(at: Patch, v: vec3<f32>) -> HalfWay {
     return HalfWay(sight.towards + index * towards_v, h_x, h_y);
 }
 
+// What the law of reflection, or Snell's, is broken by, and its slopes a texel.
+struct Law {
+    // As `HalfWay` has it.
+    h: vec3<f32>,
+    // N x H.
+    left: vec3<f32>,
+    x: vec3<f32>,
+    y: vec3<f32>,
+}
+
+fn law_at(at: Patch, v: vec3<f32>) -> Law {
+    let half = half_way(at, v);
+    let x = cross(at.n_x, half.h) + cross(at.n, half.h_x);
+    let y = cross(at.n_y, half.h) + cross(at.n, half.h_y);
+    return Law(half.h, cross(at.n, half.h), x, y);
+}
+
+// The Gauss-Newton step, texels.
+fn step_of(law: Law) -> vec2<f32> {
+    return step_towards(law.left, law.x, law.y);
+}
+
 // From a place to the reflection point of `v`.
 fn newton(begin: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
     var out: ReflectionPoint;
@@ -188,22 +222,18 @@ fn newton(begin: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
             continue;
         }
         evaluations += 1u;
-        let half = half_way(at, v);
-        let h = half.h;
-        let law = cross(at.n, h);
-        let j_x = cross(at.n_x, h) + cross(at.n, half.h_x);
-        let j_y = cross(at.n_y, h) + cross(at.n, half.h_y);
+        let law = law_at(at, v);
         out.place = place;
         out.position = at.p;
         out.normal = at.n;
         out.steps = step + 1u;
-        var delta = step_towards(law, j_x, j_y);
+        var delta = step_of(law);
         delta *= min(1.0, REACH / max(length(delta), 1e-9));
         place += delta;
         let arrived = length(delta) < ARRIVED;
-        var left = law;
+        var left = law.left;
         if arrived {
-            left += j_x * delta.x + j_y * delta.y;
+            left += law.x * delta.x + law.y * delta.y;
             out.place = place;
             out.position += at.p_x * delta.x + at.p_y * delta.y;
             out.normal = normalize(at.n + at.n_x * delta.x + at.n_y * delta.y);
@@ -212,7 +242,7 @@ fn newton(begin: vec2<f32>, v: vec3<f32>) -> ReflectionPoint {
         // H is short where the index is near 1.
         out.found = dot(left, left) < LAW * LAW && !is_out_of_sight(v, at.p, at.n);
 #else
-        out.found = dot(left, left) < LAW * LAW * dot(h, h) && dot(at.n, h) > 0.0;
+        out.found = dot(left, left) < LAW * LAW * dot(law.h, law.h) && dot(at.n, law.h) > 0.0;
 #endif
         if arrived {
             break;

@@ -23,8 +23,9 @@ struct Search {
     top: i32,
     // Refractive index behind the surface over that before it, where what is refracted is sought.
     index: f32,
-    pad_b: u32,
-    pad_c: u32,
+    // The coarsest level of the pyramid of bounds, where there is one.
+    bounds_top: i32,
+    pad: u32,
 }
 @group(0) @binding(0) var<storage, read> search: Search;
 @group(0) @binding(1) var mirror_position: texture_2d<f32>;

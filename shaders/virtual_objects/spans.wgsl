@@ -49,6 +49,16 @@ struct Span {
 // or `STRAIGHT`, or `BROAD`.
 @group(0) @binding(11) var<storage, read_write> parts: array<u32>;
 
+// Triangles of a generation. To halve: three edges, or a span within three and twice `NONE`, and the scene's
+// triangle they lie in.
+struct Generation {
+    groups_x: atomic<u32>,
+    groups_y: u32,
+    groups_z: u32,
+    total: atomic<u32>,
+    triangles: array<vec4<u32>>,
+}
+
 // Spans to look at in a generation.
 struct Looks {
     groups_x: atomic<u32>,

@@ -1,10 +1,10 @@
 // Triangles of the reflected scene, cut until they are drawn where they belong: halved where their edges
 // were, opened in their middles, listed where they cross the border of what is hidden, else drawn. One
-// generation a pass, after its spans were looked at; the first reads the scene's.
+// generation a pass, after its spans were looked at; the first reads the scene's, where link.wgsl has not made one.
 #import bindings::record::count
 #import virtual_objects::corner::{BORDER, LOST, SHOWN, status_of}
 #import virtual_objects::spans::{
-    BROAD, CUT_CORNERS, Cut, GROUP, NONE, STRAIGHT, Span, corners, corners_within, cuts, draw, ends_of,
+    BROAD, CUT_CORNERS, Cut, GROUP, Generation, NONE, STRAIGHT, Span, corners, corners_within, cuts, draw, ends_of,
     made_spans, owners, parts, room_for_corners, room_to_add, split
 }
 #ifdef SECOND
@@ -15,14 +15,6 @@
 @group(0) @binding(14) var<storage, read> source_indices: array<u32>;
 @group(0) @binding(15) var<storage, read> triangle_edges: array<u32>;
 
-// Three edges, or a span within three and twice `NONE`, and the scene's triangle they lie in.
-struct Generation {
-    groups_x: atomic<u32>,
-    groups_y: u32,
-    groups_z: u32,
-    total: atomic<u32>,
-    triangles: array<vec4<u32>>,
-}
 @group(0) @binding(9) var<storage, read_write> before: Generation;
 @group(0) @binding(17) var<storage, read_write> after: Generation;
 

@@ -13,18 +13,24 @@
 //! texels and remember nothing, hidden parts cut off along the reflector's shadow volume, triangles halved
 //! where their middles are drawn in the wrong place, and a flag where the law of reflection is broken.
 //!
+//! `roots=all` has every reflection point of a vertex where the paper has one (its section 7), by a search
+//! that loses none (`roots`), and draws the scene once for each branch of them (`link`).
+//!
 //! `bounces=2`: mirrors seen in mirrors reflect too, see `second`. Glass is looked through by its first surface,
-//! see `refraction`.
+//! see `refraction`. Both have one point a vertex.
 //!
 //! Reflectors may be searched in cube maps instead, as the older methods do (`reflector_map=cube`); what the eye
 //! sees of them is then drawn only for `hidden=clip`, which cuts along it.
 
+mod bounds;
 mod cube;
 mod draw;
 mod edges;
+mod link;
 mod params;
 mod pyramid;
 mod refraction;
+mod roots;
 mod rule;
 mod search;
 mod second;
@@ -35,7 +41,7 @@ mod tests;
 
 use std::sync::Arc;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::gpu::{Device, Format, Frame};
 use crate::scene::{Lobe, ObjectId, Scene};
 use crate::stages::{
@@ -48,6 +54,7 @@ use cube::CubeMaps;
 use draw::{Drawing, Drawn};
 use edges::Edges;
 use refraction::Refraction;
+use roots::Nodes;
 use rule::Rule;
 use search::{Found, Mirror, Search};
 use second::{Before, Second};
@@ -64,9 +71,9 @@ pub const INFO: MethodInfo = MethodInfo {
     refracts: true,
     variants: &["published", "revised"],
     params: params::PARAMS,
-    limits: "one reflection a vertex and reflector, so convex reflectors; one bounce, or two; what glass \
-             lets through by its first surface alone, and not @published, which is straight between \
-             vertices; reflector_map=cube: reflectors star-shaped about their centroid",
+    limits: "one reflection a vertex and reflector, so convex reflectors, but with roots=all; one bounce, or \
+             two; what glass lets through by its first surface alone, and not @published, which is straight \
+             between vertices; reflector_map=cube: reflectors star-shaped about their centroid",
     passes: &[
         "virtual-objects/subdivide",
         "virtual-objects/cube",
@@ -79,6 +86,12 @@ pub const INFO: MethodInfo = MethodInfo {
         "virtual-objects/start",
         "virtual-objects/cells",
         "virtual-objects/search",
+        "virtual-objects/bounds",
+        "virtual-objects/roots",
+        "virtual-objects/follow",
+        "virtual-objects/tear",
+        "virtual-objects/halve",
+        "virtual-objects/branches",
         "virtual-objects/clear",
         "virtual-objects/measure",
         "virtual-objects/look",
@@ -89,7 +102,20 @@ pub const INFO: MethodInfo = MethodInfo {
         "virtual-objects/second-background",
         "virtual-objects/second-gbuffer",
     ],
-    counters: &["searches", "steps", "evaluations", "max-steps", "hidden", "halved", "no-room"],
+    counters: &[
+        "searches",
+        "steps",
+        "evaluations",
+        "max-steps",
+        "hidden",
+        "halved",
+        "no-room",
+        "visits",
+        "roots",
+        "roots-beyond",
+        "clipped",
+        "unfinished",
+    ],
     new: Some(new),
 };
 
@@ -122,6 +148,12 @@ struct State {
 fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     let &Setup { device, mode, size, .. } = setup;
     let rule = Rule::new(setup.values);
+    if rule.all && rule.cube.is_some() {
+        return Err(Error::Usage(
+            "roots=all searches what the eye sees of a reflector; it needs reflector_map=screen"
+                .into(),
+        ));
+    }
     let texels = rule.texture_size(size);
     let cubes = rule.cube.map(|cube| CubeMaps::new(device, cube, rule.format));
     let is_open = |&mirror: &ObjectId| !setup.scene.is_closed(mirror);
@@ -200,7 +232,8 @@ impl ReflectionMethod for VirtualObjects {
             };
             search.run(frame, scene, source, found, &mirror, record)?;
             if let Some(split) = split {
-                split.run(frame, view, (source, found, search), &mirror, record)?;
+                let parts = (source, found, search);
+                split.run(frame, (scene, view), parts, &mirror, record)?;
             }
             let what = Drawn { source, found, split, reflector: object, first: None };
             drawing.run(frame, scene, view, record, what)?;
@@ -226,10 +259,13 @@ impl VirtualObjects {
         let source = lists.upload(device)?;
         // Who starts from the pyramid, or from directions, needs no texels of the frame before.
         let kept = if rule.starts_at_pyramid || rule.cube.is_some() { 0 } else { reflectors };
-        let made = if rule.clips { split::corners_made(size) } else { 0 };
-        let found = Found::new(device, source.count, kept, made)?;
+        let made = if rule.clips { split::corners_made(rule, &source, size) } else { 0 };
+        let mut found = Found::new(device, source.count, kept, made)?;
         if !rule.clips {
             return Ok(State { source, found, split: None, second: None, refraction: None });
+        }
+        if rule.all {
+            found.nodes = Some(Nodes::new(device, source.count, link::nodes_made(size))?);
         }
         let edges = Arc::new(Edges::new(device, &lists.indices)?);
         let parts = (&source, &edges);

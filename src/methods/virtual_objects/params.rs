@@ -106,6 +106,13 @@ pub const PARAMS: &[Param] = &[
         doc: "start from the texel found in the frame before (5.3), from the centre, or coarse to fine",
     },
     Param {
+        name: "roots",
+        kind: Kind::Choice(&["one", "all"]),
+        defaults: &["one"],
+        needs: Some(("hidden", CUT)),
+        doc: "reflection points of a vertex: the best, or every one, each in a mesh of its branch",
+    },
+    Param {
         name: "point",
         kind: Kind::Choice(&["texel", "newton"]),
         defaults: &["texel", "newton"],

@@ -25,6 +25,8 @@ pub struct Rule {
     /// Searches go from coarse to fine, or hidden parts are cut: a pyramid is needed.
     pub pyramid: bool,
     pub starts_at_pyramid: bool,
+    /// All reflection points of a vertex are sought, not one.
+    pub all: bool,
     pub cap: u32,
     pub threshold: f32,
     /// Hidden parts are cut off.
@@ -47,6 +49,7 @@ const DEFINES: &[(&str, &str, &str)] = &[
     ("pattern", "eight", "PATTERN_EIGHT"),
     ("point", "newton", "POINT_NEWTON"),
     ("image", "push", "IMAGE_PUSH"),
+    ("roots", "all", "ROOTS_ALL"),
     ("hidden", "inverse", "HIDDEN_INVERSE"),
     ("hidden", "clip", "HIDDEN_CLIP"),
     ("equation", "printed", "EQUATION_PRINTED"),
@@ -60,8 +63,9 @@ impl Rule {
         let mut defines: Vec<_> = chosen.map(|&(_, _, define)| (define, 1)).collect();
         let clips = values.is("hidden", "clip");
         let cube = CubeRule::new(values);
+        let all = values.is("roots", "all");
         let starts_at_pyramid = cube.is_none() && values.is("start", "pyramid");
-        let pyramid = cube.is_none() && (clips || starts_at_pyramid);
+        let pyramid = cube.is_none() && !all && (clips || starts_at_pyramid);
         let more = [("PYRAMID", pyramid), ("START_PYRAMID", starts_at_pyramid)];
         defines
             .extend(more.into_iter().filter(|&(_, wanted)| wanted).map(|(define, _)| (define, 1)));
@@ -77,6 +81,7 @@ impl Rule {
             forgets: !values.is("start", "previous"),
             pyramid,
             starts_at_pyramid,
+            all,
             cap: values.u32("cap"),
             threshold: values.f32("threshold"),
             clips,
@@ -98,13 +103,18 @@ impl Rule {
         self.anew("REFRACTED")
     }
 
-    /// With one more definition, searched in textures, and nothing remembered of the frame before.
+    /// With one more definition, one point a vertex searched in textures, and nothing remembered of the frame before.
     fn anew(&self, define: &'static str) -> Rule {
         let mut rule = self.clone();
-        let replaced = ["START_PYRAMID", "PYRAMID", "REFLECTOR_CUBE", "CUBE_NEWTON"];
+        let replaced = ["START_PYRAMID", "PYRAMID", "REFLECTOR_CUBE", "CUBE_NEWTON", "ROOTS_ALL"];
         rule.defines.retain(|(define, _)| !replaced.contains(define));
         rule.defines.extend([("START_PYRAMID", 1), ("PYRAMID", 1), (define, 1)]);
-        Rule { forgets: true, starts_at_pyramid: true, pyramid: true, cube: None, ..rule }
+        rule.forgets = true;
+        rule.starts_at_pyramid = true;
+        rule.pyramid = true;
+        rule.all = false;
+        rule.cube = None;
+        rule
     }
 
     /// For the method's shaders.

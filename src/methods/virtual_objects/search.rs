@@ -7,6 +7,7 @@ use glam::Vec2;
 
 use super::cube::BoundCube;
 use super::pyramid::Pyramid;
+use super::roots::{AllRoots, Nodes};
 use super::rule::Rule;
 use super::source::Source;
 use crate::error::Result;
@@ -28,8 +29,8 @@ pub struct SearchUniform {
     reflector: u32,
     top: i32,
     index: f32,
-    pad_b: u32,
-    pad_c: u32,
+    bounds_top: i32,
+    pad: u32,
 }
 
 /// WGSL `Middle` of `shaders/virtual_objects/start.wgsl`.
@@ -45,7 +46,9 @@ pub struct Search {
     /// Finds the first texel, where there is no pyramid to start from.
     start: Option<ComputePipeline>,
     pyramid: Option<Pyramid>,
-    vertices: ComputePipeline,
+    /// Finds one reflection point a vertex, or all.
+    vertices: Option<ComputePipeline>,
+    pub all: Option<AllRoots>,
     cap: u32,
     threshold: f32,
     /// Every frame starts anew.
@@ -60,6 +63,8 @@ pub struct Found {
     pub texels: Buffer,
     /// Where the searches of the reflector at hand start.
     start: Buffer,
+    /// All reflection points of each vertex, where they are sought.
+    pub nodes: Option<Nodes>,
 }
 
 /// One reflector to be searched.
@@ -103,6 +108,7 @@ impl Found {
             corners: Buffer::storage(device, "reflected corners", corners)?,
             texels: Buffer::storage(device, "search texels", bytes)?,
             start: Buffer::storage(device, "search start", 16)?,
+            nodes: None,
         })
     }
 }
@@ -119,11 +125,15 @@ impl Search {
         texels: [u32; 2],
     ) -> Result<Search> {
         let pipeline = |file, defines| ComputePipeline::new(device, file, defines);
-        let starts = rule.cube.is_none() && !rule.starts_at_pyramid;
+        let starts = rule.cube.is_none() && !rule.starts_at_pyramid && !rule.all;
+        let file = "virtual_objects/search.wgsl";
+        let vertices = || ComputePipeline::new(device, file, &rule.defines(mode));
+        let all = || AllRoots::new(device, rule, mode, texels);
         Ok(Search {
             start: starts.then(|| pipeline("virtual_objects/start.wgsl", &[])).transpose()?,
             pyramid: rule.pyramid.then(|| Pyramid::new(device, texels)).transpose()?,
-            vertices: pipeline("virtual_objects/search.wgsl", &rule.defines(mode))?,
+            vertices: (!rule.all).then(vertices).transpose()?,
+            all: rule.all.then(all).transpose()?,
             cap: rule.cap,
             threshold: rule.threshold,
             forgets: rule.forgets,
@@ -140,6 +150,10 @@ impl Search {
         mirror: &Mirror,
         record: &ReflectionRecord,
     ) -> Result<()> {
+        if let (Some(all), Some(nodes)) = (&self.all, &found.nodes) {
+            return all.run(frame, scene, (source, nodes, self), mirror, record, false);
+        }
+        let Some(vertices) = &self.vertices else { return Ok(()) };
         if let Some(start) = &self.start {
             let texel = middle(scene, mirror);
             frame
@@ -153,7 +167,7 @@ impl Search {
         if let Some(pyramid) = &self.pyramid {
             pyramid.build(frame, mirror.gbuffer)?;
         }
-        let pass = frame.pass("virtual-objects/search").compute(&self.vertices);
+        let pass = frame.pass("virtual-objects/search").compute(vertices);
         self.bind(record.bind_counters(scene.bind(pass)), mirror)
             .buffer("vertices", &source.vertices)
             .buffer("owners", &source.owners)
@@ -177,7 +191,8 @@ impl Search {
             reflector: mirror.object,
             top: self.pyramid.as_ref().map_or(0, Pyramid::top),
             index: mirror.index,
-            ..Zeroable::zeroed()
+            bounds_top: self.all.as_ref().map_or(0, |all| all.bounds.top()),
+            pad: 0,
         };
         let pass = pass
             .storage_struct("search", &search)
@@ -190,6 +205,10 @@ impl Search {
             .optional();
         let pass = match &mirror.cube {
             Some(cube) => cube.bind(pass),
+            None => pass,
+        };
+        let pass = match &self.all {
+            Some(all) => all.bounds.bind(pass),
             None => pass,
         };
         let pass = match &self.pyramid {
@@ -234,7 +253,7 @@ mod tests {
     #[rustfmt::skip]
     fn uniforms_are_laid_out_as_their_wgsl_twins() {
         assert_layout!("virtual_objects/search.wgsl", "Search", SearchUniform,
-            total, history, cut, cap, size, threshold, reflector, top, index, pad_b, pad_c);
+            total, history, cut, cap, size, threshold, reflector, top, index, bounds_top, pad);
         assert_layout!("virtual_objects/start.wgsl", "Middle", MiddleUniform, texel, pad);
     }
 }

@@ -165,7 +165,7 @@ impl Second {
             surfaces: surfaces(device, &[], &[rule.format; 2])?,
             gbuffer: GBuffer::new(device, texels, rule.format)?,
             search: Search::new(device, rule, mode, texels)?,
-            found: Found::new(device, source.count, 0, corners_made(size))?,
+            found: Found::new(device, source.count, 0, corners_made(rule, source, size))?,
             split: Split::new(device, rule, mode, (source, edges), size)?,
             drawing: Drawing::new(device, rule, mode)?,
         })
@@ -232,7 +232,7 @@ impl Second {
         };
         self.search.run(frame, scene, source, &self.found, &mirror, record)?;
         let parts = (source, &self.found, &self.search);
-        self.split.run(frame, view, parts, &mirror, record)?;
+        self.split.run(frame, (scene, view), parts, &mirror, record)?;
         let what = Drawn {
             source,
             found: &self.found,

@@ -6,13 +6,14 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 
 use super::edges::Edges;
+use super::link::{self, Link};
 use super::rule::Rule;
 use super::search::{Found, Mirror, Search};
 use super::source::Source;
 use crate::error::Result;
 use crate::gpu::{Buffer, ComputePipeline, Device, Draw, Frame, Pass};
 use crate::scene::ObjectId;
-use crate::stages::{RecordMode, ReflectionRecord, View};
+use crate::stages::{GpuScene, RecordMode, ReflectionRecord, View};
 
 /// WGSL `Split` of `shaders/virtual_objects/spans.wgsl`.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -34,6 +35,8 @@ pub struct SplitUniform {
 /// Pipelines and lists.
 pub struct Split {
     pipelines: Pipelines,
+    /// Makes the first generation where a vertex has several images.
+    link: Option<Link>,
     edges: Arc<Edges>,
     /// Spans that are not the scene's edges, and what all are cut into.
     made_spans: Buffer,
@@ -56,13 +59,14 @@ pub struct Split {
 }
 
 /// What is cut: one reflector's virtual objects.
-struct Reflection<'a> {
-    view: &'a View<'a>,
-    source: &'a Source,
-    found: &'a Found,
-    search: &'a Search,
-    mirror: &'a Mirror<'a>,
-    record: &'a ReflectionRecord,
+pub struct Reflection<'a> {
+    pub scene: &'a GpuScene,
+    pub view: &'a View<'a>,
+    pub source: &'a Source,
+    pub found: &'a Found,
+    pub search: &'a Search,
+    pub mirror: &'a Mirror<'a>,
+    pub record: &'a ReflectionRecord,
 }
 
 struct Pipelines {
@@ -88,8 +92,10 @@ const CUT_CORNERS: u32 = 5;
 const HEAD: u64 = 32;
 
 /// Corners that can be made for a view of `size` pixels.
-pub fn corners_made([width, height]: [u32; 2]) -> u32 {
-    (width * height / PIXELS_A_CORNER).max(LEAST_CORNERS)
+pub fn corners_made(rule: &Rule, source: &Source, size: [u32; 2]) -> u32 {
+    let [width, height] = size;
+    let linked = if rule.all { link::corners_made(source.triangle_count, size) } else { 0 };
+    (width * height / PIXELS_A_CORNER).max(LEAST_CORNERS) + linked
 }
 
 impl Pipelines {
@@ -107,7 +113,7 @@ impl Pipelines {
 }
 
 impl Split {
-    /// For views of `size` pixels.
+    /// For views of `size` pixels and so many corners made.
     ///
     /// # Errors
     /// [`crate::error::Error::Device`] with the numbers when a list is beyond the device's limits.
@@ -118,7 +124,7 @@ impl Split {
         (source, edges): (&Source, &Arc<Edges>),
         size: [u32; 2],
     ) -> Result<Split> {
-        let corner_room = corners_made(size);
+        let corner_room = corners_made(rule, source, size);
         let span_room = SPANS_A_CORNER * corner_room;
         let storage = |name, words: u64| Buffer::storage(device, name, HEAD + 4 * words);
         let corners = u64::from(corner_room);
@@ -126,7 +132,9 @@ impl Split {
         let looks = u64::from(edges.count).max(spans);
         // Two triangles are added for a corner at most, and each in two new ones in its generation.
         let triangles = |name| storage(name, 4 * 4 * corners);
+        let link = || Link::new(device, rule, mode, source.triangle_count, size);
         Ok(Split {
+            link: rule.all.then(link).transpose()?,
             pipelines: Pipelines::new(device, &rule.defines(mode))?,
             made_spans: storage("spans made", 3 * spans)?,
             parts: storage("spans' parts", u64::from(edges.count) + spans)?,
@@ -151,15 +159,24 @@ impl Split {
     pub fn run(
         &self,
         frame: &mut Frame,
-        view: &View,
+        (scene, view): (&GpuScene, &View),
         (source, found, search): (&Source, &Found, &Search),
         mirror: &Mirror,
         record: &ReflectionRecord,
     ) -> Result<()> {
-        let it = Reflection { view, source, found, search, mirror, record };
-        let heads = [&self.drawn, &self.cuts];
+        let it = Reflection { scene, view, source, found, search, mirror, record };
+        let mut heads = vec![&self.drawn, &self.cuts];
+        // The scene's triangles are the first generation, or those that are linked the second.
+        let [_, linked] = &self.triangles;
+        if self.link.is_some() {
+            heads.extend([&self.fresh, linked]);
+        }
         frame.pass("virtual-objects/clear").fill_first(&heads, HEAD, 0)?;
-        for generation in 0..=self.most {
+        if let Some(link) = &self.link {
+            link.run(frame, &it, self, linked)?;
+        }
+        let first = u32::from(self.link.is_some());
+        for generation in first..=self.most.max(first) {
             let [before, after] = match generation % 2 {
                 0 => [&self.triangles[0], &self.triangles[1]],
                 _ => [&self.triangles[1], &self.triangles[0]],
@@ -205,7 +222,7 @@ impl Split {
     }
 
     /// Bind what passes share; each uses some.
-    fn bind<'f>(&self, pass: Pass<'f>, it: &Reflection<'f>, generation: u32) -> Pass<'f> {
+    pub fn bind<'f>(&self, pass: Pass<'f>, it: &Reflection<'f>, generation: u32) -> Pass<'f> {
         let split = SplitUniform {
             vertices: it.source.count,
             triangles: it.source.triangle_count,

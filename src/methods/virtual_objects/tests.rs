@@ -3,6 +3,8 @@
 
 mod cube;
 mod ellipsoid;
+mod roots;
+mod scan;
 
 use std::sync::Arc;
 
