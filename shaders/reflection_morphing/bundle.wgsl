@@ -176,7 +176,9 @@ fn seen(point: vec3<f32>, nearest: u32) -> Seen {
         at += vec2<i32>(clamp(floor(place), vec2(-2.0), vec2(2.0)));
         let next = quad_at(like, face, at);
         if !next.whole && beyond <= RIM {
-            return seen_between(quad, place, point);
+            out = seen_between(quad, place, point);
+            out.within = false;
+            return out;
         }
         quad = next;
     }

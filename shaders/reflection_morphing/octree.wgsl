@@ -103,56 +103,73 @@ fn nearest(point: vec3<f32>) -> Nearest {
 const MAX_DEPTH: u32 = 10u;
 // Of each level seven cells wait while one is open.
 const WAITING: u32 = 71u;
+// What a waiting cell's first word has besides a cell's: how often its box was halved. The second word is the
+// box's corner, in cells of `MAX_DEPTH`.
+const LEVEL: u32 = 27u;
+const CELL: u32 = (1u << LEVEL) - 1u;
 
-// A cell to be visited: its word, its corner in cells of `MAX_DEPTH`, and how often its box was halved.
-struct Visit {
-    cell: u32,
-    level: u32,
-    corner: vec3<u32>,
+// Of the rays in a leaf, those that are nearer than what was found.
+fn nearest_in(leaf: u32, found: Nearest, point: vec3<f32>) -> Nearest {
+    var out = found;
+    for (var place = starts[leaf]; place < starts[leaf + 1u]; place += 1u) {
+        out = nearer(out, lists[place], point);
+    }
+    return out;
 }
 
-// Where a corner of cells is, world.
-fn cell_corner(corner: vec3<u32>) -> vec3<f32> {
-    return octree.low + vec3<f32>(corner) / f32(1u << MAX_DEPTH) * (octree.high - octree.low);
+// A point's distances from the lower and the upper half of a box's sides, squared.
+struct Halves {
+    lower: vec3<f32>,
+    upper: vec3<f32>,
 }
 
-// The square of a point's distance from a cell.
-fn distance_to(visit: Visit, point: vec3<f32>) -> f32 {
-    let low = cell_corner(visit.corner);
-    let high = cell_corner(visit.corner + (1u << (MAX_DEPTH - visit.level)));
-    let apart = point - clamp(point, low, high);
-    return dot(apart, apart);
+fn halves(point: vec3<f32>, corner: vec3<u32>, half: u32) -> Halves {
+    let scale = (octree.high - octree.low) / f32(1u << MAX_DEPTH);
+    let low = octree.low + vec3<f32>(corner) * scale;
+    let middle = octree.low + vec3<f32>(corner + half) * scale;
+    let high = octree.low + vec3<f32>(corner + 2u * half) * scale;
+    let lower = point - clamp(point, low, middle);
+    let upper = point - clamp(point, middle, high);
+    return Halves(lower * lower, upper * upper);
 }
 
-// Of the leaves it can run through, near ones first.
+// Of the leaves it can run through: the point's own, then those nearer than what was found, near ones first.
 fn nearest(point: vec3<f32>) -> Nearest {
     var out = Nearest(0u, false, 0u, 0.0);
-    var waiting: array<Visit, WAITING>;
-    waiting[0] = Visit(cells[0], 0u, vec3(0u));
+    var own = LEAF;
+    if all(point >= octree.low) && all(point <= octree.high) {
+        own = leaf_of(point);
+        out = nearest_in(own, out, point);
+    }
+    var waiting: array<vec2<u32>, WAITING>;
+    waiting[0] = vec2(cells[0], 0u);
     var count = 1u;
     while count > 0u {
         count -= 1u;
         let visit = waiting[count];
-        if out.found && distance_to(visit, point) > out.distance_squared {
-            continue;
-        }
-        if (visit.cell & LEAF) != 0u {
-            let leaf = visit.cell & ~LEAF;
-            for (var place = starts[leaf]; place < starts[leaf + 1u]; place += 1u) {
-                out = nearer(out, lists[place], point);
+        if (visit.x & LEAF) != 0u {
+            let leaf = visit.x & CELL;
+            if leaf != own {
+                out = nearest_in(leaf, out, point);
             }
             continue;
         }
-        let half = 1u << (MAX_DEPTH - visit.level - 1u);
-        let upper = point >= cell_corner(visit.corner + half);
-        let near = dot(vec3<u32>(upper), vec3(1u, 2u, 4u));
+        let level = (visit.x >> LEVEL) & 15u;
+        let half = 1u << (MAX_DEPTH - level - 1u);
+        let corner = vec3(visit.y & 1023u, (visit.y >> 10u) & 1023u, visit.y >> 20u);
+        let away = halves(point, corner, half);
+        let near = dot(vec3<u32>(away.upper < away.lower), vec3(1u, 2u, 4u));
         // The last pushed is visited first: the part nearest to the point.
         for (var part = 0u; part < 8u; part += 1u) {
             let which = near ^ (7u - part);
             let step = vec3(which & 1u, (which >> 1u) & 1u, which >> 2u);
-            let cell = cells[visit.cell + which];
-            waiting[count] = Visit(cell, visit.level + 1u, visit.corner + half * step);
-            count += 1u;
+            let apart = dot(select(away.lower, away.upper, step == vec3(1u)), vec3(1.0));
+            if !out.found || apart <= out.distance_squared {
+                let cell = cells[(visit.x & CELL) + which];
+                let at = visit.y + half * dot(step, vec3(1u, 1u << 10u, 1u << 20u));
+                waiting[count] = vec2(cell | ((level + 1u) << LEVEL), at);
+                count += 1u;
+            }
         }
     }
     return out;

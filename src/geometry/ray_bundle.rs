@@ -107,10 +107,10 @@ impl RayTable {
 
     /// Between four rays, beginning beside the nearest; through that one where the point lies in no bundle.
     pub fn seen(&self, rays: &[RaySegment], point: Vec3, nearest: u32) -> Seen {
-        let Some((quad, place)) = self.bundle(rays, point, nearest) else {
+        let Some((quad, place, within)) = self.bundle(rays, point, nearest) else {
             return Seen { within: false, ..self.seen_by_ray(rays, point, nearest) };
         };
-        let mut seen = Seen { point: Vec3::ZERO, way: 0.0, within: true };
+        let mut seen = Seen { point: Vec3::ZERO, way: 0.0, within };
         let mut last = Vec3::ZERO;
         for (ray, weight) in quad.into_iter().zip(bilinear(place)) {
             let (first, way) = self.before(rays, ray);
@@ -122,8 +122,13 @@ impl RayTable {
         seen
     }
 
-    /// The quad a point lies in, and where.
-    fn bundle(&self, rays: &[RaySegment], point: Vec3, nearest: u32) -> Option<([u32; 4], Vec2)> {
+    /// The quad a point lies in, or is nearest to at the rim; where, and which of both.
+    fn bundle(
+        &self,
+        rays: &[RaySegment],
+        point: Vec3,
+        nearest: u32,
+    ) -> Option<([u32; 4], Vec2, bool)> {
         let like = &rays[nearest as usize];
         let texel = like.texel % self.texels();
         let face = texel / (self.size * self.size);
@@ -135,10 +140,12 @@ impl RayTable {
             let place = place_in(quad.map(|ray| &rays[ray as usize]), point)?;
             let beyond = (place - place.clamp(Vec2::ZERO, Vec2::ONE)).abs().max_element();
             if beyond <= SLACK {
-                return Some((quad, place));
+                return Some((quad, place, true));
             }
             at += place.floor().clamp(Vec2::splat(-2.0), Vec2::splat(2.0)).as_ivec2();
-            let Some(next) = quad_at(at) else { return (beyond <= RIM).then_some((quad, place)) };
+            let Some(next) = quad_at(at) else {
+                return (beyond <= RIM).then_some((quad, place, false));
+            };
             quad = next;
         }
         None

@@ -145,7 +145,12 @@ impl RayOctree {
             extent = extent.child(which);
             cell = self.cells[(cell + which) as usize];
         }
-        let leaf = (cell & !LEAF) as usize;
+        self.list(cell & !LEAF)
+    }
+
+    /// The segments of a leaf by its number.
+    fn list(&self, leaf: u32) -> &[u32] {
+        let leaf = leaf as usize;
         &self.lists[self.starts[leaf] as usize..self.starts[leaf + 1] as usize]
     }
 

@@ -17,66 +17,51 @@ struct Visit {
     level: u32,
 }
 
-/// Of each level seven cells wait while one is open.
-const WAITING: usize = 7 * MAX_DEPTH as usize + 1;
-
 impl RayOctree {
-    /// The segment of a trace nearest to a point, wherever it runs. WGSL twin: `nearest_of_near` of
+    /// The segment of a trace nearest to a point, wherever it runs. WGSL twin: `nearest` of
     /// `shaders/reflection_morphing/octree.wgsl`.
     pub fn nearest_of_near(&self, point: Vec3, trace: u32) -> Option<u32> {
-        let mut waiting = Vec::with_capacity(WAITING);
-        waiting.push(Visit { cell: self.cells[0], corner: UVec3::ZERO, level: 0 });
-        let mut nearest: Option<(f32, u32)> = None;
-        while let Some(visit) = waiting.pop() {
-            if nearest.is_some_and(|(least, _)| self.distance_to(&visit, point) > least) {
+        let mut nearest = self.nearer_of(None, self.leaf(point), point, trace);
+        let mut waiting = vec![Visit { cell: self.cells[0], corner: UVec3::ZERO, level: 0 }];
+        while let Some(Visit { cell, corner, level }) = waiting.pop() {
+            if cell & LEAF != 0 {
+                nearest = self.nearer_of(nearest, self.list(cell & !LEAF), point, trace);
                 continue;
             }
-            if visit.cell & LEAF != 0 {
-                let leaf = (visit.cell & !LEAF) as usize;
-                for &place in
-                    &self.lists[self.starts[leaf] as usize..self.starts[leaf + 1] as usize]
-                {
-                    let segment = &self.segments[place as usize];
-                    if segment.trace == trace {
-                        let found = (segment.distance_squared(point), place);
-                        // Of two as near the first in the map, whichever leaf is visited first.
-                        nearest = Some(
-                            nearest
-                                .map_or(found, |least| if found < least { found } else { least }),
-                        );
-                    }
-                }
-                continue;
-            }
-            let half = 1 << (MAX_DEPTH - visit.level - 1);
-            let middle = self.corner(visit.corner + half);
-            let near = point.cmpge(middle).bitmask();
+            let half = 1 << (MAX_DEPTH - level - 1);
+            let near = point.cmpge(self.corner(corner + half)).bitmask();
             // The last pushed is visited first: the part nearest to the point.
-            for part in (0..8).rev() {
-                let which = near ^ part;
-                let step = UVec3::new(which & 1, which >> 1 & 1, which >> 2);
-                waiting.push(Visit {
-                    cell: self.cells[(visit.cell + which) as usize],
-                    corner: visit.corner + half * step,
-                    level: visit.level + 1,
-                });
+            for which in (0..8).rev().map(|part| near ^ part) {
+                let corner = corner + half * UVec3::new(which & 1, which >> 1 & 1, which >> 2);
+                let (low, high) = (self.corner(corner), self.corner(corner + half));
+                let apart = (point - point.clamp(low, high)).length_squared();
+                if nearest.is_none_or(|(least, _)| apart <= least) {
+                    let cell = self.cells[(cell + which) as usize];
+                    waiting.push(Visit { cell, corner, level: level + 1 });
+                }
             }
         }
         nearest.map(|(_, place)| place)
+    }
+
+    /// The least of what was found and the segments of a leaf, by distance; of two as near the first in the map.
+    fn nearer_of(
+        &self,
+        found: Option<(f32, u32)>,
+        leaf: &[u32],
+        point: Vec3,
+        trace: u32,
+    ) -> Option<(f32, u32)> {
+        let of_trace = |place: &&u32| self.segments[**place as usize].trace == trace;
+        let distance =
+            |&place: &u32| (self.segments[place as usize].distance_squared(point), place);
+        let least = |a: (f32, u32), b: (f32, u32)| if b < a { b } else { a };
+        found.into_iter().chain(leaf.iter().filter(of_trace).map(distance)).reduce(least)
     }
 
     /// Where a corner of cells is, world.
     fn corner(&self, corner: UVec3) -> Vec3 {
         let share = corner.as_vec3() / (1 << MAX_DEPTH) as f32;
         self.extent.low + share * (self.extent.high - self.extent.low)
-    }
-
-    /// The square of a point's distance from a cell.
-    fn distance_to(&self, visit: &Visit, point: Vec3) -> f32 {
-        let (low, high) = (
-            self.corner(visit.corner),
-            self.corner(visit.corner + (1 << (MAX_DEPTH - visit.level))),
-        );
-        (point - point.clamp(low, high)).length_squared()
     }
 }

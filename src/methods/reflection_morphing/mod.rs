@@ -6,6 +6,9 @@
 //! should thus be considered as being part of the camera": rays know nothing of diffuse objects, which may
 //! move; they are made anew where a reflector moves.
 //!
+//! `@revised`: a vertex is projected between the four rays that it runs among (`point`), found beside the
+//! nearest of all (`leaves`); it is drawn where any node sees it (`weights`).
+//!
 //! `bounces` above one: see `orders`.
 //!
 //! Choices the paper leaves to us: where nodes lie (`cell`, from the world's origin on), how finely meshes are
@@ -48,7 +51,7 @@ pub const INFO: MethodInfo = MethodInfo {
     depends: Changes { objects: false, reflectors: true, shading: false },
     flags: false,
     refracts: false,
-    variants: &["published"],
+    variants: &["published", "revised"],
     params: params::PARAMS,
     limits: "one reflection a vertex and chain of reflectors (`bounces`); reflectors that move cost eight octrees a frame; \
              vertices no ray passes by take their triangles with them",
@@ -141,11 +144,14 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
 
 /// How vertices are looked up and their places weighed.
 fn look_up_defines(values: &Values) -> Vec<(&'static str, u32)> {
-    let further = values.u32("bounces") > 1;
+    let (further, bundles) = (values.u32("bounces") > 1, values.is("point", "bundle"));
     let choices = [
         ("BRUTE_FORCE", values.is("lookup", "brute-force")),
+        ("LEAVES_NEIGHBOURS", values.is("leaves", "neighbours")),
+        ("POINT_BUNDLE", bundles),
+        ("WEIGHTS_VALID", values.is("weights", "valid")),
         ("TRACES_MIXED", values.is("traces", "mixed")),
-        ("RAY_MAP", further),
+        ("RAY_MAP", further || bundles),
     ];
     choices.into_iter().filter(|(_, on)| *on).map(|(name, _)| (name, 1)).collect()
 }

@@ -1,6 +1,7 @@
 //! MORPH_VERTEX (Martin & Popescu 2004, section 6) on the device: eight look-ups a vertex, interpolated.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
@@ -94,9 +95,8 @@ impl Vertices {
 
     /// Have room for what is seen by a trace of so many vertices.
     fn make_room(&mut self, device: &Arc<Device>, trace: Trace, count: u32) -> Result<()> {
-        if !self.points.contains_key(&trace.packed) {
-            let points = Buffer::storage(device, "points seen", 8 * 16 * u64::from(count))?;
-            self.points.insert(trace.packed, points);
+        if let Entry::Vacant(room) = self.points.entry(trace.packed) {
+            room.insert(Buffer::storage(device, "points seen", 8 * 16 * u64::from(count))?);
         }
         Ok(())
     }

@@ -64,6 +64,27 @@ pub const PARAMS: &[Param] = &[
         doc: "longest edge of diffuse meshes, metres (section 5; unstated); 0: as modelled",
     },
     Param {
+        name: "leaves",
+        kind: Kind::Choice(&["one", "neighbours"]),
+        defaults: &["one", "neighbours"],
+        needs: Some(("lookup", &["octree"])),
+        doc: "where the nearest ray is sought: in the vertex's own leaf, or in all that may hold a nearer one",
+    },
+    Param {
+        name: "point",
+        kind: Kind::Choice(&["ray", "bundle"]),
+        defaults: &["ray", "bundle"],
+        needs: None,
+        doc: "where a node sees a vertex: where it sees the nearest ray, or between the four rays round the vertex",
+    },
+    Param {
+        name: "weights",
+        kind: Kind::Choice(&["all", "valid"]),
+        defaults: &["all", "valid"],
+        needs: None,
+        doc: "vertices are drawn that all eight nodes see (section 6), or any, by the weights of those that do",
+    },
+    Param {
         name: "lookup",
         kind: Kind::Choice(&["octree", "brute-force"]),
         defaults: &["octree"],
