@@ -1,4 +1,5 @@
-//! What `virtual-objects` shows through one refracting surface, against the truth.
+//! What `virtual-objects` shows through one refracting surface, and `reflection-morphing` by rays at the eye,
+//! against the truth.
 
 mod gpu_support;
 mod truth_support;
@@ -11,6 +12,7 @@ use truth_support::{scene, tracer};
 
 const SIZE: [u32; 2] = [160, 100];
 const REVISED: &str = "virtual-objects@revised:subdivide=0.25";
+const RAYS: &str = "reflection-morphing:nodes=eye,subdivide=0.05";
 
 /// Water over a checkered bottom, a pole that stands in it, a box that lies in it.
 const POOL: &str = r#"
@@ -73,8 +75,8 @@ fn with_index(text: &str, index: f32) -> Scene {
 
 /// Of the pixels where the truth sees a surface through one refraction: their number, the share that is bad at
 /// a pixel, and the displacements of the others at the 95th percentile, pixels.
-fn seen_through(session: &Session, scene: &Scene, size: [u32; 2]) -> (usize, f64, f32) {
-    let tested = frame(session, scene, REVISED, size, 0);
+fn seen_through(session: &Session, scene: &Scene, case: &str, size: [u32; 2]) -> (usize, f64, f32) {
+    let tested = frame(session, scene, case, size, 0);
     let tracer = tracer(scene, Shapes::Tessellated);
     let truth = tracer.frame(size);
     let (_, maps) = measure::accuracy(&truth, &tested, &tracer).unwrap();
@@ -100,9 +102,11 @@ fn through_one(truth: &FrameRecord) -> Vec<usize> {
 fn one_surface_is_looked_through_as_snell_has_it() {
     let session = Session::open();
     for (text, index) in [(POOL, 1.0), (POOL, 1.33), (POOL, 2.4), (PAPERWEIGHT, 1.5)] {
-        let (pixels, bad, p95) = seen_through(&session, &with_index(text, index), SIZE);
-        assert!(pixels > 900, "{index}: only {pixels} pixels");
-        assert!(bad < 0.05 && p95 < 0.5, "{index}: {bad} bad, p95 {p95} px");
+        for case in [REVISED, RAYS] {
+            let (pixels, bad, p95) = seen_through(&session, &with_index(text, index), case, SIZE);
+            assert!(pixels > 900, "{index}: only {pixels} pixels");
+            assert!(bad < 0.05 && p95 < 0.5, "{case}, {index}: {bad} bad, p95 {p95} px");
+        }
     }
 }
 
@@ -114,6 +118,7 @@ fn only_the_revised_method_refracts() {
         record.ids.iter().filter(|ids| ids.status() == Status::Found).count()
     };
     assert_eq!(found("virtual-objects"), 0);
+    assert_eq!(found("reflection-morphing:files=none,map=8"), 0);
     assert!(found(REVISED) > 5000);
 }
 
@@ -123,7 +128,8 @@ fn by_index() {
     let session = Session::open();
     for (name, text) in [("water", POOL), ("ball", PAPERWEIGHT)] {
         for index in [1.0, 1.1, 1.33, 1.5, 1.8, 2.1, 2.4] {
-            let (pixels, bad, p95) = seen_through(&session, &with_index(text, index), [320, 200]);
+            let (pixels, bad, p95) =
+                seen_through(&session, &with_index(text, index), REVISED, [320, 200]);
             println!("{name} {index}: {pixels} pixels, {:.2} % bad, p95 {p95:.3} px", 100.0 * bad);
         }
     }

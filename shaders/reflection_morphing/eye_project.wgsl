@@ -41,7 +41,21 @@ struct Place {
     origin: vec3<f32>,
     // From there to the point.
     length: f32,
+    // How often the bundle is turned over before.
+    caustics: u32,
     within: bool,
+}
+
+// How often a bundle's rays cross before a length: its cross section is a + b l + c l^2, with a sign.
+fn caustics_before(a: f32, b: f32, c: f32, length: f32) -> u32 {
+    let at_end = a + length * (b + length * c);
+    if a * at_end < 0.0 {
+        return 1u;
+    }
+    // Both ends have one sign: between them it crosses twice or not at all.
+    let turn = -0.5 * b;
+    let is_within = turn * c > 0.0 && abs(turn) < abs(c) * length;
+    return select(0u, 2u, is_within && b * b > 4.0 * a * c);
 }
 
 // The ray of a bundle that meets a point: origins and directions are interpolated between the four. Who is so far
@@ -72,6 +86,16 @@ fn place_in(bundle: Bundle, v: vec3<f32>, away: f32) -> Place {
             out.at = at;
             out.origin = p;
             out.length = length;
+            let x_l = d_x + at.y * d_xy;
+            let y_l = d_y + at.x * d_xy;
+            let x_0 = x - length * x_l;
+            let y_0 = y - length * y_l;
+            out.caustics = caustics_before(
+                dot(cross(x_0, y_0), d),
+                dot(cross(x_0, y_l) + cross(x_l, y_0), d),
+                dot(cross(x_l, y_l), d),
+                length,
+            );
             out.within = all(abs(moved) < vec2(BESIDE)) && all(abs(at - 0.5) <= vec2(0.5 + BESIDE)) && length > 0.0;
             break;
         }
@@ -86,10 +110,12 @@ fn place_in(bundle: Bundle, v: vec3<f32>, away: f32) -> Place {
     return out;
 }
 
-// The ray of a bundle that meets a point; of several bundles with one that of the shortest path, as what is seen
-// by others is farther off. Of equals the first, so that the order of lists does not matter.
+// The ray of a bundle that meets a point. Of several bundles with one, that turned over least often: before any
+// caustic a path is the shortest of those beside it, as all are before a convex mirror. Of those that of the shortest
+// path; of equals the first, so that the order of lists does not matter.
 struct Found {
     origin: vec3<f32>,
+    caustics: u32,
     // From the eye to the point.
     path: f32,
     texel: u32,
@@ -109,10 +135,14 @@ fn bundle_at(texel: vec2<u32>) -> Bundle {
 fn with_place(found: Found, place: Place, texel: vec2<u32>) -> Found {
     let path = dot(place.origin - camera.eye, arriving(camera, place.origin)) + place.length;
     let index = texel.y * bins.size + texel.x;
-    if found.found && (path > found.path || path == found.path && index >= found.texel) {
-        return found;
+    if found.found {
+        let is_level = place.caustics == found.caustics;
+        let is_same = is_level && path == found.path;
+        if place.caustics > found.caustics || is_level && path > found.path || is_same && index >= found.texel {
+            return found;
+        }
     }
-    return Found(place.origin, path, index, true);
+    return Found(place.origin, place.caustics, path, index, true);
 }
 
 // With what all bundles between two texels give, the second beyond the last.

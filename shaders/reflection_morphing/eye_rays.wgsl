@@ -1,6 +1,6 @@
 // The ray of each texel of a reflector's textures: how light goes on from there that the eye sees (ray maps of
 // Martin & Popescu 2004, section 4.1, of the eye's own place, the first hit drawn instead of traced).
-#import bindings::departure::depart
+#import bindings::departure::{LOBE_REFLECTED, depart}
 #import bindings::scene::{materials, objects}
 #import common::camera::{Camera, arriving, eye_direction}
 #import reflection_morphing::eye_bins::{EyeRay, RAY_LEAVES, RAY_NONE, RAY_PASSES, TORN, bins}
@@ -84,7 +84,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var ray: EyeRay;
     if point.w == 1.0 {
         ray = leaving(point.xyz, normal_at(texel));
-    } else {
+    } else if bins.lobe == LOBE_REFLECTED {
         ray = passing(texel);
     }
     let right = texel + vec2(1, 0);

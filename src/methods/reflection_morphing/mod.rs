@@ -16,6 +16,8 @@
 //! triangles are drawn. Look-ups of vertices that stand still are kept for as long as their node is one of
 //! the eight ("these vertices must only be morphed once for each sampling cell", section 8): a node that two
 //! cells share is not asked again.
+//!
+//! `nodes=eye`: the eye is the only node, made anew in every frame, see `eye`.
 
 mod eye;
 pub mod file;
@@ -30,6 +32,7 @@ mod trace;
 use crate::error::{Error, Result};
 use crate::geometry::Projection;
 use crate::gpu::Frame;
+use crate::scene::{Lobe, ObjectId};
 use crate::stages::{GpuScene, MirroredEnvironment, ReflectionRecord, View};
 use crate::truth::Cache;
 
@@ -50,11 +53,12 @@ pub const INFO: MethodInfo = MethodInfo {
     family: Family::FeedForward,
     depends: Changes { objects: false, reflectors: true, shading: false },
     flags: false,
-    refracts: false,
+    refracts: true,
     variants: &["published", "revised"],
     params: params::PARAMS,
-    limits: "one reflection a vertex and chain of reflectors (`bounces`); reflectors that move cost eight octrees a frame; \
-             vertices no ray passes by take their triangles with them",
+    limits: "one reflection a vertex and chain of reflectors (`bounces`, one with nodes=eye); reflectors that move cost \
+             eight octrees a frame, but not with nodes=eye; what glass lets through with nodes=eye alone, by its first \
+             surface; vertices no ray passes by take their triangles with them",
     passes: &[
         "reflection-morphing/subdivide",
         "reflection-morphing/octree",
@@ -180,6 +184,9 @@ impl ReflectionMethod for ReflectionMorphing {
         view: &View,
         record: &mut ReflectionRecord,
     ) -> Result<()> {
+        if view.lobe == Lobe::Refracted {
+            return Ok(());
+        }
         let cell = self.grid.cell_of(view.camera.eye());
         self.fetch(frame, scene, &cell)?;
         let Some(State { source, .. }) = &self.state else { return Ok(()) };

@@ -74,14 +74,14 @@ pub const PARAMS: &[Param] = &[
         name: "point",
         kind: Kind::Choice(&["ray", "bundle"]),
         defaults: &["ray", "bundle"],
-        needs: None,
+        needs: GRID,
         doc: "where a node sees a vertex: where it sees the nearest ray, or between the four rays round the vertex",
     },
     Param {
         name: "weights",
         kind: Kind::Choice(&["all", "valid"]),
         defaults: &["all", "valid"],
-        needs: None,
+        needs: GRID,
         doc: "vertices are drawn that all eight nodes see (section 6), or any, by the weights of those that do",
     },
     Param {

@@ -61,8 +61,10 @@ const SHEAF: u32 = 4;
 /// WGSL `BLOCK`.
 const BLOCK: u32 = 1024;
 
-/// Entries that lists have room for, by sheaf; several times what was seen, where the device allows it.
-const ENTRIES_A_SHEAF: u64 = 512;
+/// Entries that lists have room for, where the device allows it: twenty times as many a sheaf as were seen before a
+/// sphere, as hollow mirrors have their rays cross; and so many at least, as few rays are wide apart.
+const ENTRIES_A_SHEAF: u64 = 1024;
+const LEAST_ENTRIES: u64 = 1 << 20;
 
 /// Pipelines and lists.
 pub struct Bins {
@@ -107,7 +109,7 @@ impl Bins {
         let texels = u64::from(size) * u64::from(size);
         let words = |name, words: u64| Buffer::storage(device, name, 4 * words);
         let sheaves = u64::from((size - 1).div_ceil(SHEAF).pow(2));
-        let room = (ENTRIES_A_SHEAF * sheaves).min(device.storage_limit() / 4);
+        let room = (ENTRIES_A_SHEAF * sheaves).max(LEAST_ENTRIES).min(device.storage_limit() / 4);
         // One block more, so that every list ends where another begins.
         let cells = u64::from(MOST_LEVELS * SIDE.pow(3) + BLOCK);
         Ok(Bins {

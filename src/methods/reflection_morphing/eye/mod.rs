@@ -11,7 +11,13 @@
 //! Choices of ours: cells are those of cubes about the reflector, each twice the size of the last, since rays part
 //! as they go; the eye's own rays that just miss the reflector take part, so that bundles reach to the border of
 //! what it hides, where light only grazes it; bundles across a jump in depth are left out; of several bundles
-//! that hold a vertex (hollow mirrors) the one of the shortest path is taken.
+//! that hold a vertex (hollow mirrors) the one that is turned over least often before it is taken, and of those
+//! the one of the shortest path. Every vertex is shown once: where a reflector shows things twice, as a bowl does
+//! that is seen from outside and within, triangles between its images cover both.
+//!
+//! Glass: "if the ray octrees contained refracted rays instead of reflected rays, it would be possible to render
+//! curved refractive surfaces quickly and correctly" (section 9). They do, of its first surface: what lies behind it
+//! is taken to be within it, as under water.
 
 mod bins;
 #[cfg(test)]
@@ -23,6 +29,7 @@ use crate::gpu::{Buffer, ComputePipeline, Frame};
 use crate::methods::reflected::{Corner, Reflected};
 use crate::methods::source::{Lists, Source};
 use crate::methods::{ReflectionMethod, Setup, Want};
+use crate::scene::Lobe;
 use crate::stages::{CameraUniform, GpuScene, MirroredEnvironment, ReflectionRecord, View};
 
 use bins::{Bins, BinsStruct, Mirror};
@@ -34,6 +41,8 @@ pub struct EyeNode {
     environment: MirroredEnvironment,
     project: ComputePipeline,
     reflected: Reflected,
+    /// Draws what glass lets through, where there is any.
+    refracted: Option<Reflected>,
     /// What is reflected, and the [`Corner`]s found for the reflector at hand; made by the first `prepare`.
     state: Option<(Source, Buffer)>,
 }
@@ -51,14 +60,18 @@ impl EyeNode {
         }
         let project =
             ComputePipeline::new(device, "reflection_morphing/eye_project.wgsl", &defines)?;
-        let mut defines = mode.defines();
-        defines.push(("TWO_SIDED", 1));
+        let drawing = |lobe: &[(&'static str, u32)]| {
+            let defines = [&mode.defines()[..], &[("TWO_SIDED", 1)], lobe].concat();
+            Reflected::new(device, mode, &defines, 0.0)
+        };
+        let refracts = setup.scene.scene.refracts();
         Ok(EyeNode {
             edge: values.f32("subdivide"),
             bins: Bins::new(device, mode, values.u32("map"), extent)?,
             environment: MirroredEnvironment::new(device, mode)?,
             project,
-            reflected: Reflected::new(device, mode, &defines, 0.0)?,
+            reflected: drawing(&[])?,
+            refracted: refracts.then(|| drawing(&[("REFRACTED", 1)])).transpose()?,
             state: None,
         })
     }
@@ -106,6 +119,11 @@ impl ReflectionMethod for EyeNode {
         record: &mut ReflectionRecord,
     ) -> Result<()> {
         let Some((source, corners)) = &self.state else { return Ok(()) };
+        let drawing = match (view.lobe, &self.refracted) {
+            (Lobe::Reflected, _) => &self.reflected,
+            (Lobe::Refracted, Some(refracted)) => refracted,
+            (Lobe::Refracted, None) => return Ok(()),
+        };
         source.pose(frame, scene, "reflection-morphing")?;
         self.environment.fill(frame, scene, "reflection-morphing", view, record)?;
         let record = &*record;
@@ -115,7 +133,7 @@ impl ReflectionMethod for EyeNode {
             let drawn = (source, corners);
             self.project(frame, scene, (&view.camera, record), &bins, drawn)?;
             let name = "reflection-morphing";
-            self.reflected.draw(frame, scene, name, (view, record), object, drawn)?;
+            drawing.draw(frame, scene, name, (view, record), object, drawn)?;
         }
         Ok(())
     }
