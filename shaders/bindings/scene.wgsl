@@ -44,6 +44,12 @@ struct Material {
     image: u32,
     // Refractive index of the inside of glass; 0 elsewhere.
     index: f32,
+    // A mirror's attenuation with distance: metres, 0 without; and what is left at least.
+    fade_distance: f32,
+    fade_floor: f32,
+    // 1 where a mirror's share rises to 1 for grazing light.
+    fresnel: u32,
+    pad: u32,
 }
 
 struct ImageInfo {
