@@ -193,8 +193,7 @@ fn a_tinted_mirror_with_a_colour_of_its_own_looks_as_traced() {
     let (session, mut scene) = (Session::open(), scene::load("lecture").unwrap());
     let mirror = scene.objects[scene.reflectors()[0] as usize].material;
     scene.materials[mirror].pattern = Pattern::Colour(Vec3::new(0.1, 0.3, 0.2));
-    scene.materials[mirror].mirror =
-        Some(Mirror { reflectance: 0.6, tint: Vec3::new(1.0, 0.8, 0.5) });
+    scene.materials[mirror].mirror = Some(Mirror::plain(0.6, Vec3::new(1.0, 0.8, 0.5)));
     let size = [160, 80];
     let tested = frame(&session, &scene, "planar-mirror", size, 0);
     let truth = tracer(&scene, &scene.at(0)).frame(size);

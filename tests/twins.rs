@@ -236,7 +236,7 @@ fn departures() {
     let material = |mirror: Option<f32>, index: Option<f32>| Material {
         name: "m".into(),
         pattern: Pattern::Colour(Vec3::ZERO),
-        mirror: mirror.map(|reflectance| Mirror { reflectance, tint }),
+        mirror: mirror.map(|reflectance| Mirror::plain(reflectance, tint)),
         glass: index.map(|index| Glass { index, tint }),
     };
     scene.materials = vec![

@@ -44,10 +44,21 @@ fn depart(
         return Departure(behind.passes, behind.direction, share, share * material.tint);
     }
     if material.reflectance >= 0.0 && lobe == LOBE_REFLECTED {
-        let weight = material.reflectance * material.tint;
-        return Departure(true, reflect(incident, normal), material.reflectance, weight);
+        let share = mirror_share(material, -dot(incident, normal));
+        return Departure(true, reflect(incident, normal), share, share * material.tint);
     }
     return NO_DEPARTURE;
+}
+
+// Share of light that a mirror reflects at this cosine between ray and normal: Fresnel's law in Schlick's
+// approximation (1994, equation 15).
+fn mirror_share(material: Material, cosine: f32) -> f32 {
+    if material.fresnel == 0u {
+        return material.reflectance;
+    }
+    let rest = 1.0 - clamp(cosine, 0.0, 1.0);
+    return material.reflectance
+        + (1.0 - material.reflectance) * (rest * rest) * (rest * rest) * rest;
 }
 
 // Whether this is the layer a record follows through a surface met on the way. Of two equal halves

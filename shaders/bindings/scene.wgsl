@@ -44,6 +44,12 @@ struct Material {
     image: u32,
     // Refractive index of the inside of glass; 0 elsewhere.
     index: f32,
+    // A mirror's attenuation with distance: metres, 0 without; and what is left at least.
+    fade_distance: f32,
+    fade_floor: f32,
+    // 1 where a mirror's share rises to 1 for grazing light.
+    fresnel: u32,
+    pad: u32,
 }
 
 struct ImageInfo {
@@ -151,10 +157,15 @@ fn albedo(material: Material, uv: vec2<f32>) -> vec3<f32> {
     }
 }
 
-// Lambert with ambient and one directional light; `normal` is a unit vector on the viewer's side.
-fn shade(material: Material, normal: vec3<f32>, uv: vec2<f32>) -> vec3<f32> {
+// Ambient and one directional light on a surface; `normal` is a unit vector on the viewer's side.
+fn illumination(normal: vec3<f32>) -> vec3<f32> {
     let sun = light.sun * max(0.0, dot(normal, light.towards_sun));
-    return albedo(material, uv) * (light.ambient + sun);
+    return light.ambient + sun;
+}
+
+// Lambert: what of that light leaves the surface.
+fn shade(material: Material, normal: vec3<f32>, uv: vec2<f32>) -> vec3<f32> {
+    return albedo(material, uv) * illumination(normal);
 }
 
 // Radiance from infinitely far away; `d` is a unit vector.

@@ -160,7 +160,7 @@ pub fn row(
         variant,
         params,
         fallback: settings.fallback.name().into(),
-        record: settings.record.name().into(),
+        record: settings.record.enough_for(scene).name().into(),
         size: settings.size,
         frames: plan.frames.clone(),
         truth_frames: truth_frames.to_vec(),

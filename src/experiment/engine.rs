@@ -121,7 +121,9 @@ impl Engine {
         if let Some(folder) = &options.shader_dir {
             device.read_shaders(folder)?;
         }
-        let (size, mode) = (options.size, options.record);
+        let record = options.record.enough_for(scene);
+        let options = &RunOptions { record, ..options.clone() };
+        let (size, mode) = (options.size, record);
         let gpu_scene = GpuScene::new(device, &Arc::new(scene.clone()))?;
         let fallback = options.fallback.filling();
         let fallback =

@@ -238,7 +238,7 @@ impl<'a> Court<'a> {
         let tracer = self.tracer;
         let ray = tracer.moment().camera.ray(self.truth.size, position);
         let hit = tracer.look(&ray).filter(|hit| tracer.scene().is_reflector(hit.object))?;
-        Some(tracer.leaving(&hit, ray.direction, tracer.bounces(), Vec3::ONE))
+        Some(tracer.seen(&hit, ray.direction))
     }
 
     /// What this lobe adds to the colour at the pixel's centre, as traced and as it were with the
@@ -253,7 +253,8 @@ impl<'a> Court<'a> {
         };
         let incident = self.eye_ray(pixel).direction;
         let way = self.tracer.depart(&first.hit, incident, self.lobe);
-        let weight = way.map_or(Vec3::ZERO, |way| way.weight);
+        let faded = self.tracer.scene().material_of(first.hit.object).faded(chain.path);
+        let weight = way.map_or(Vec3::ZERO, |way| faded * way.weight);
         [chain.radiance, arriving].map(|radiance| own + weight * radiance)
     }
 

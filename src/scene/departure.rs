@@ -47,7 +47,7 @@ impl Material {
                 }
             }
             (None, Some(mirror), Lobe::Reflected) => {
-                (reflect(incident, normal), mirror.reflectance, mirror.tint)
+                (reflect(incident, normal), mirror.share(-incident.dot(normal)), mirror.tint)
             }
             (None, _, _) => return None,
         };
@@ -106,7 +106,7 @@ mod tests {
     fn mirrors_reflect_only_and_weak_ones_are_not_followed() {
         let tint = Vec3::new(1.0, 0.5, 0.0);
         for (reflectance, followed) in [(0.4, false), (0.5, true)] {
-            let mirror = material(Some(Mirror { reflectance, tint }), None);
+            let mirror = material(Some(Mirror::plain(reflectance, tint)), None);
             let ways: Vec<_> = mirror.departures(Vec3::NEG_Y, Vec3::Y, true).collect();
             let [way] = ways.as_slice() else { panic!("{ways:?}") };
             assert_eq!((way.direction, way.weight), (Vec3::Y, reflectance * tint));

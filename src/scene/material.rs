@@ -19,6 +19,11 @@ impl Material {
     pub fn is_reflector(&self) -> bool {
         self.mirror.is_some() || self.glass.is_some()
     }
+
+    /// What is left of light reflected after so many metres from here.
+    pub fn faded(&self, path: f32) -> f32 {
+        self.mirror.and_then(|mirror| mirror.fade).map_or(1.0, |fade| fade.share(path))
+    }
 }
 
 /// Diffuse albedo over texture coordinates.
@@ -49,10 +54,49 @@ pub enum Pattern {
 /// What a reflector does to the light it reflects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mirror {
-    /// Share of light reflected, 0 to 1.
+    /// Share of light reflected, 0 to 1; with `fresnel` that of light along the normal.
     pub reflectance: f32,
     /// Colour multiplied onto the reflection.
     pub tint: Vec3,
+    /// The share rises to 1 for grazing light.
+    pub fresnel: bool,
+    /// How what is reflected fades with its distance.
+    pub fade: Option<Fade>,
+}
+
+impl Mirror {
+    /// One whose share depends on nothing.
+    pub fn plain(reflectance: f32, tint: Vec3) -> Mirror {
+        Mirror { reflectance, tint, fresnel: false, fade: None }
+    }
+
+    /// Share of light reflected at this cosine between ray and normal: Fresnel's law in Schlick's
+    /// approximation (1994, equation 15).
+    pub fn share(&self, cosine: f32) -> f32 {
+        if !self.fresnel {
+            return self.reflectance;
+        }
+        let rest = 1.0 - cosine.clamp(0.0, 1.0);
+        self.reflectance + (1.0 - self.reflectance) * (rest * rest) * (rest * rest) * rest
+    }
+}
+
+/// Attenuation with distance (Popescu et al. 2006, slide 29, which gives no formula): the mirror that the
+/// eye sees shows light after `path` metres from it as exp(-path / distance) of itself, down to `floor`,
+/// which is also what is left of the environment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fade {
+    /// Metres, above 0.
+    pub distance: f32,
+    /// 0 to 1.
+    pub floor: f32,
+}
+
+impl Fade {
+    /// What is left after so many metres.
+    pub fn share(&self, path: f32) -> f32 {
+        self.floor + (1.0 - self.floor) * (-path / self.distance).exp()
+    }
 }
 
 /// The inside of a closed surface: light is split between reflection and refraction (Fresnel).

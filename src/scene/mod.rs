@@ -20,7 +20,7 @@ use glam::{Affine3A, Vec2, Vec3};
 use crate::geometry::{Camera, Mesh};
 pub use departure::Departure;
 pub use library::{SCENES_VARIABLE, list, load, scenes_dir};
-pub use material::{Environment, Glass, Image, Lighting, Material, Mirror, Pattern};
+pub use material::{Environment, Fade, Glass, Image, Lighting, Material, Mirror, Pattern};
 pub use record::{FrameRecord, Ids, Lobe, ReflectionRecord, Source, Status};
 pub use select::matches_pattern;
 pub use wobble::Wobble;
@@ -73,6 +73,19 @@ pub struct Object {
     /// The closed form the mesh approximates, in object space, where there is one at all times.
     pub surface: Option<Surface>,
     pub motion: Motion,
+    pub impostor: Impostor,
+}
+
+/// What stands for an object in methods that replace what is reflected by impostors.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Impostor {
+    /// A picture placed from the object's bounds.
+    #[default]
+    Fitted,
+    /// A picture that faces this way, a unit vector of object space.
+    Facing(Vec3),
+    /// None of its own: it is far away, and shown by the environment map.
+    Backdrop,
 }
 
 /// Closed forms in object space, centred at the origin, round ones about the y axis. Metres.
@@ -172,6 +185,20 @@ impl Scene {
     /// Whether anything is of glass, so that reflectors have a second lobe.
     pub fn refracts(&self) -> bool {
         self.objects.iter().any(|object| self.materials[object.material].glass.is_some())
+    }
+
+    /// Whether any mirror's share depends on the angle.
+    pub fn has_fresnel_mirrors(&self) -> bool {
+        let mirrors =
+            self.objects.iter().filter_map(|object| self.materials[object.material].mirror);
+        mirrors.into_iter().any(|mirror| mirror.fresnel)
+    }
+
+    /// Whether any mirror's reflection fades with distance.
+    pub fn fades(&self) -> bool {
+        let mirrors =
+            self.objects.iter().filter_map(|object| self.materials[object.material].mirror);
+        mirrors.into_iter().any(|mirror| mirror.fade.is_some())
     }
 
     /// Whether any object moves.

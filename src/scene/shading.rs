@@ -106,6 +106,7 @@ mod tests {
                 material: 0,
                 surface: None,
                 motion: Motion::Still(Affine3A::IDENTITY),
+                impostor: Default::default(),
             }],
             wobbles: Default::default(),
             meshes: vec![Mesh::default()],

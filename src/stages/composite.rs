@@ -16,8 +16,15 @@ pub struct Composite {
 impl Composite {
     pub fn new(device: &Arc<Device>, scene: &GpuScene, size: [u32; 2]) -> Result<Composite> {
         let file = "stages/composite.wgsl";
+        let mut defines = scene.defines();
+        if scene.scene.refracts() || scene.scene.has_fresnel_mirrors() {
+            defines.push(("BY_ANGLE", 1));
+        }
+        if scene.scene.fades() {
+            defines.push(("FADES", 1));
+        }
         Ok(Composite {
-            pipeline: ComputePipeline::new(device, file, &scene.defines())?,
+            pipeline: ComputePipeline::new(device, file, &defines)?,
             picture: Image::new(device, "picture", Format::Rgba16Float, size, Shape::Flat)?,
         })
     }
@@ -35,7 +42,9 @@ impl Composite {
         if let Some(refracted) = refracted {
             pass = pass.sample("refracted", &refracted.radiance);
         }
-        pass.sample("direct", &view.direct.colour)
+        record
+            .bind_last(pass)
+            .sample("direct", &view.direct.colour)
             .sample("radiance", &record.radiance)
             .store("picture", &self.picture)
             .over_pixels(self.picture.size)

@@ -21,6 +21,12 @@ pub enum RecordMode {
 }
 
 impl RecordMode {
+    /// This mode, or the full one where the picture itself needs the evidence: how far what a mirror shows is,
+    /// where it fades with that.
+    pub fn enough_for(self, scene: &scene::Scene) -> RecordMode {
+        if scene.fades() { RecordMode::Full } else { self }
+    }
+
     /// The shader definitions of this mode.
     pub fn defines(self) -> Vec<(&'static str, u32)> {
         match self {
@@ -125,6 +131,15 @@ impl ReflectionRecord {
         match &self.evidence {
             None => pass,
             Some(e) => pass.buffer("counters", e.counters()).optional(),
+        }
+    }
+
+    /// Bind where the last bounces happened and how long paths are, to a pass that reads them; not without
+    /// evidence.
+    pub fn bind_last<'f>(&'f self, pass: Pass<'f>) -> Pass<'f> {
+        match &self.evidence {
+            None => pass,
+            Some(e) => pass.sample("last", &e.last).optional(),
         }
     }
 

@@ -67,6 +67,10 @@ pub struct MaterialEntry {
     size: [f32; 2],
     image: u32,
     index: f32,
+    fade_distance: f32,
+    fade_floor: f32,
+    fresnel: u32,
+    pad: u32,
 }
 
 /// WGSL `ImageInfo`.
@@ -326,6 +330,10 @@ fn material_entry(material: &Material) -> MaterialEntry {
     if let Some(mirror) = material.mirror {
         entry.tint = mirror.tint.to_array();
         entry.reflectance = mirror.reflectance;
+        entry.fresnel = u32::from(mirror.fresnel);
+        if let Some(fade) = mirror.fade {
+            (entry.fade_distance, entry.fade_floor) = (fade.distance, fade.floor);
+        }
     }
     if let Some(glass) = material.glass {
         entry.tint = glass.tint.to_array();
@@ -389,7 +397,8 @@ mod tests {
         assert_layout!("stages/direct_view.wgsl", "Object", ObjectEntry,
             row_x, row_y, row_z, material, rank, selected, first_index);
         assert_layout!("stages/direct_view.wgsl", "Material", MaterialEntry,
-            first, pattern, second, line, tint, reflectance, size, image, index);
+            first, pattern, second, line, tint, reflectance, size, image, index, fade_distance,
+            fade_floor, fresnel, pad);
         assert_layout!("stages/direct_view.wgsl", "ImageInfo", ImageEntry,
             offset, width, height, pad);
         assert_layout!("stages/background.wgsl", "Light", LightUniform,

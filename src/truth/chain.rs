@@ -145,6 +145,19 @@ impl Tracer<'_> {
         radiance
     }
 
+    /// The colour of the surface at `hit` as an eye sees it by a ray travelling along `incident`: what
+    /// leaves it, but faded by the distance of what it mirrors.
+    pub fn seen(&self, hit: &Hit, incident: Vec3) -> Vec3 {
+        let material = self.scene.material_of(hit.object);
+        if material.mirror.is_none_or(|mirror| mirror.fade.is_none()) {
+            return self.leaving(hit, incident, self.bounces(), Vec3::ONE);
+        }
+        self.composite(hit, incident, |lobe| {
+            let chain = self.chain(*hit, incident, lobe);
+            chain.map_or(Vec3::ZERO, |chain| material.faded(chain.path) * chain.radiance)
+        })
+    }
+
     /// Light arriving at `hit` from a way on; `left` counts the bounce at `hit`.
     fn arriving(&self, hit: &Hit, way: &Departure, left: u32, throughput: Vec3) -> Vec3 {
         if throughput.max_element() < FAINT {

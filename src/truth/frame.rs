@@ -111,7 +111,7 @@ impl Tracer<'_> {
     fn colour(&self, size: [u32; 2], position: Vec2) -> Vec3 {
         let ray = self.moment.camera.ray(size, position);
         match self.look(&ray) {
-            Some(hit) => self.leaving(&hit, ray.direction, self.bounces(), Vec3::ONE),
+            Some(hit) => self.seen(&hit, ray.direction),
             None => shading::environment(self.scene, ray.direction),
         }
     }
@@ -138,7 +138,10 @@ impl Tracer<'_> {
         });
         Pixel {
             colour: self.composite(&hit, ray.direction, |lobe| match lobe {
-                Lobe::Reflected => reflected.radiance,
+                Lobe::Reflected => {
+                    let material = self.scene.material_of(hit.object);
+                    material.faded(reflected.last.w) * reflected.radiance
+                }
                 Lobe::Refracted => refracted.radiance,
             }),
             reflector: hit.object,

@@ -148,20 +148,21 @@ fn texture(id: ObjectId, material: &Material, look: Look) -> String {
             format!("color rgb <{red}, {level}, 0>")
         }
     };
-    let reflection = material.mirror.map_or(String::new(), |Mirror { reflectance, tint }| {
-        let passes = match look {
-            Look::Flat => reflectance * tint,
-            Look::Ids => {
-                assert!(
-                    reflectance >= 0.5,
-                    "{}: ids are those of the heavier layer",
-                    material.name
-                );
-                Vec3::X
-            }
-        };
-        format!(" reflection {{ rgb {} }}", V(passes))
-    });
+    let reflection =
+        material.mirror.map_or(String::new(), |Mirror { reflectance, tint, .. }| {
+            let passes = match look {
+                Look::Flat => reflectance * tint,
+                Look::Ids => {
+                    assert!(
+                        reflectance >= 0.5,
+                        "{}: ids are those of the heavier layer",
+                        material.name
+                    );
+                    Vec3::X
+                }
+            };
+            format!(" reflection {{ rgb {} }}", V(passes))
+        });
     let finish = format!("finish {{ ambient 0 diffuse 0 emission 1{reflection} }}");
     format!("texture {{ uv_mapping pigment {{ {pigment} }} {finish} }}")
 }

@@ -8,8 +8,8 @@ use toml::Spanned;
 
 use super::camera;
 use super::format::{
-    EnvironmentFile, KeyFile, LightingFile, MaterialFile, ObjectFile, ScatterFile, SceneFile,
-    ShapeFile, Span, WobbleFile,
+    EnvironmentFile, ImpostorFile, KeyFile, LightingFile, MaterialFile, ObjectFile, ScatterFile,
+    SceneFile, ShapeFile, Span, WobbleFile,
 };
 use super::image::decode;
 use super::parts::{PartMaterial, parts};
@@ -19,8 +19,8 @@ use super::values::{Positive, Triple, colour, triple};
 use super::wobble::wobble;
 use crate::error::Result;
 use crate::scene::{
-    Environment, Glass, Image, Lighting, Material, Mirror, Motion, Object, Pattern, Scene, Surface,
-    Wobble,
+    Environment, Fade, Glass, Image, Impostor, Lighting, Material, Mirror, Motion, Object, Pattern,
+    Scene, Surface, Wobble,
 };
 
 /// The materials of the file, by name.
@@ -132,9 +132,15 @@ impl Builder {
 
     fn material(&mut self, name: &str, file: &Spanned<MaterialFile>) -> Result<Material> {
         let keys = file.get_ref();
-        let mirror = keys.mirror.as_ref();
-        let mirror = mirror
-            .map(|mirror| Mirror { reflectance: mirror.reflectance.0, tint: colour(mirror.tint) });
+        let mirror = keys.mirror.as_ref().map(|mirror| Mirror {
+            reflectance: mirror.reflectance.0,
+            tint: colour(mirror.tint),
+            fresnel: mirror.fresnel,
+            fade: mirror
+                .fade
+                .as_ref()
+                .map(|fade| Fade { distance: fade.distance.0, floor: fade.floor.0 }),
+        });
         let glass = keys.glass.as_ref();
         let glass = glass.map(|glass| Glass { index: glass.index.0, tint: colour(glass.tint) });
         let mut patterns = self.patterns(keys)?;
@@ -230,6 +236,7 @@ impl Builder {
         let wobble = file.wobble.as_ref();
         let closed = file.closed.as_ref().map(|shape| self.closed(shape, scale, wobble));
         let closed = closed.transpose()?;
+        let impostor = self.impostor(file)?;
         for part in self.make(&file.shape, scale, wobble)? {
             let name = match &part.name {
                 Some(part) => format!("{group}.{}", part.replace(|c| !is_name_character(c), "-")),
@@ -249,9 +256,19 @@ impl Builder {
                 material,
                 surface: part.surface,
                 motion: motion.clone(),
+                impostor,
             });
         }
         Ok(())
+    }
+
+    fn impostor(&self, file: &ObjectFile) -> Result<Impostor> {
+        let Some(file) = &file.impostor else { return Ok(Impostor::Fitted) };
+        let ImpostorFile::Facing(towards) = file.get_ref() else { return Ok(Impostor::Backdrop) };
+        triple(*towards).try_normalize().map(Impostor::Facing).ok_or_else(|| {
+            let message = "facing has no direction; valid: a vector that is not zero";
+            self.source.error(&file.span(), message)
+        })
     }
 
     /// Checks that a name is new and may stand in the pattern of a case.

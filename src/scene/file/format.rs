@@ -163,6 +163,21 @@ pub struct MirrorFile {
     pub reflectance: Share,
     #[serde(default = "white")]
     pub tint: Colour,
+    #[serde(default)]
+    pub fresnel: bool,
+    pub fade: Option<FadeFile>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FadeFile {
+    pub distance: Positive,
+    #[serde(default = "none_left")]
+    pub floor: Share,
+}
+
+fn none_left() -> Share {
+    Share(0.0)
 }
 
 #[derive(Deserialize)]
@@ -191,6 +206,15 @@ pub struct ObjectFile {
     pub orbit: Option<OrbitFile>,
     pub keys: Option<Vec<Spanned<KeyFile>>>,
     pub scatter: Option<Spanned<ScatterFile>>,
+    pub impostor: Option<Spanned<ImpostorFile>>,
+}
+
+/// What stands for an object in methods that use impostors.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "snake_case")]
+pub enum ImpostorFile {
+    Facing(Triple),
+    Backdrop,
 }
 
 /// A wave that travels over an object's surface.
