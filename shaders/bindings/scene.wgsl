@@ -151,10 +151,15 @@ fn albedo(material: Material, uv: vec2<f32>) -> vec3<f32> {
     }
 }
 
-// Lambert with ambient and one directional light; `normal` is a unit vector on the viewer's side.
-fn shade(material: Material, normal: vec3<f32>, uv: vec2<f32>) -> vec3<f32> {
+// Ambient and one directional light on a surface; `normal` is a unit vector on the viewer's side.
+fn illumination(normal: vec3<f32>) -> vec3<f32> {
     let sun = light.sun * max(0.0, dot(normal, light.towards_sun));
-    return albedo(material, uv) * (light.ambient + sun);
+    return light.ambient + sun;
+}
+
+// Lambert: what of that light leaves the surface.
+fn shade(material: Material, normal: vec3<f32>, uv: vec2<f32>) -> vec3<f32> {
+    return albedo(material, uv) * illumination(normal);
 }
 
 // Radiance from infinitely far away; `d` is a unit vector.

@@ -139,7 +139,7 @@ impl MapMaker {
             Source::Resampled(CaptureStage::new(device)?, resample)
         };
         let mips = values.is("filter", "mip");
-        let shrink = mips.then(|| pipeline("environment_map/shrink.wgsl")).transpose()?;
+        let shrink = mips.then(|| pipeline("stages/shrink.wgsl")).transpose()?;
         let (device, size) = (device.clone(), values.u32("size"));
         Ok(MapMaker { device, projection, size, source, shrink })
     }
