@@ -103,6 +103,21 @@ impl Heights<'_> {
         let (top, bottom) = (a + part.x * (b - a), c + part.x * (d - c));
         top + part.y * (bottom - top)
     }
+
+    /// Four neighbours a texel, as shaders read them: each texel's own height and its right neighbour's, then
+    /// those below; 16 bits each.
+    pub fn quads(&self) -> Vec<[u32; 2]> {
+        let word = |x: u32, y: u32| {
+            let inside = x < self.size && y < self.size;
+            let height = if inside { self.texels[(y * self.size + x) as usize] } else { 0.0 };
+            (height.clamp(0.0, 1.0) * 65535.0 + 0.5) as u32
+        };
+        let quad = |i: u32| {
+            let (x, y) = (i % self.size, i / self.size);
+            [y, y + 1].map(|y| word(x, y) | word(x + 1, y) << 16)
+        };
+        (0..self.size * self.size).map(quad).collect()
+    }
 }
 
 /// Part of a row; x in texels from the row's left end on.

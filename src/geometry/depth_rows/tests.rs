@@ -174,14 +174,15 @@ fn a_ray_along_a_maps_rows_meets_what_a_march_meets() {
         let marched = march(heights, &line, LIMITS.jump, false);
         if let (Some(found), Some(marched)) = (found.place, marched.place) {
             hits += 1;
-            assert!(found.distance(marched) < 1.5, "{found} and {marched}");
+            // Where a ray grazes the ball, a height off by a tolerance is texels off along it.
+            assert!(found.distance(marched) < 3.0, "{found} and {marched}");
         }
     }
     assert!(hits > 100, "{hits} hits");
 }
 
-/// Half the mean and the mean of how far rows' hits lie beside their rays, and what
-/// x tan(half the step) allows, x from the middle of the ray's part on.
+/// How far beside their rays the rows pass that were hit, where they were, on average; and
+/// x tan(half the step), x from the middle of the ray's part on.
 fn lateral(step_deg: u32, re_anchor: bool) -> [f32; 2] {
     let texels = image(ball);
     let rows = rows(&texels, shape(step_deg, 64));
@@ -193,7 +194,7 @@ fn lateral(step_deg: u32, re_anchor: bool) -> [f32; 2] {
         let from_middle = line.at(0.5).xy() - place;
         sum += if re_anchor {
             // The point lies on the ray; the row it was found in does not.
-            rows_away(&rows, &line, place, found.share)
+            rows_away(&rows, &line, found.share)
         } else {
             from_middle.perp_dot(along).abs()
         };
@@ -205,13 +206,12 @@ fn lateral(step_deg: u32, re_anchor: bool) -> [f32; 2] {
 }
 
 /// How far beside the ray the row of the re-anchored hit passes where it was hit.
-fn rows_away(rows: &DepthRows, line: &ImageLine, place: Vec2, share: f32) -> f32 {
+fn rows_away(rows: &DepthRows, line: &ImageLine, share: f32) -> f32 {
     let once = search(rows, line, Rule { skins: false, re_anchor: false });
     let across = (line.end - line.start).xy();
     let step = PI / rows.shape.angles as f32;
     let off = across.to_angle().rem_euclid(step);
     let off = off.min(step - off);
-    let _ = place;
     (share - once.share).abs() * across.length() * off.tan()
 }
 
