@@ -6,6 +6,7 @@ pub mod bezier;
 pub mod bvh;
 pub mod camera;
 pub mod cube;
+pub mod depth_rows;
 pub mod face_ray;
 pub mod latlong;
 pub mod mesh;

@@ -4,6 +4,7 @@
 //! `tests/methods_vs_truth.rs` and its figures.
 
 pub mod case;
+pub mod depth_impostors;
 mod distance_impostor;
 mod environment_map;
 mod explosion_map;
@@ -160,4 +161,5 @@ pub static METHODS: &[MethodInfo] = &[
     virtual_objects::INFO,
     explosion_map::INFO,
     reflection_morphing::INFO,
+    depth_impostors::INFO,
 ];

@@ -1,0 +1,87 @@
+//! What can be chosen; the slides state segments, angles and little else.
+
+use crate::methods::params::STAGE;
+use crate::methods::{Kind, Param};
+
+pub const PARAMS: &[Param] = &[
+    Param {
+        name: "size",
+        kind: Kind::Integer { min: 16, max: 2048 },
+        defaults: &["512"],
+        needs: None,
+        doc: "texels along a side of a depth image, a multiple of 8; also rows of a rotated map (unstated)",
+    },
+    Param {
+        name: "search",
+        kind: Kind::Choice(&["srdm", "march"]),
+        defaults: &["srdm"],
+        needs: None,
+        doc: "simplified rotated depth maps (slides 37, 38), or texel by texel along the epipolar segment (36)",
+    },
+    Param {
+        name: "step_deg",
+        kind: Kind::Integer { min: 1, max: 90 },
+        defaults: &["10", "3"],
+        needs: Some(("search", &["srdm"])),
+        doc: "degrees between rotated maps, rounded to a whole share of 180 (slide 46: 20, 10, 3, 2)",
+    },
+    Param {
+        name: "segments",
+        kind: Kind::Integer { min: 1, max: 64 },
+        defaults: &["32"],
+        needs: Some(("search", &["srdm"])),
+        doc: "most segments a row is simplified to (slide 39: 8, 16, 32, 64)",
+    },
+    Param {
+        name: "build",
+        kind: Kind::Choice(&["cpu", "gpu"]),
+        defaults: &["cpu", "gpu"],
+        needs: Some(("search", &["srdm"])),
+        doc: "where rows are built: on all cores (slide 39), or on the device (slide 50, future work)",
+    },
+    Param {
+        name: "re_anchor",
+        kind: Kind::Choice(&["off", "on"]),
+        defaults: &["off", "on"],
+        needs: Some(("search", &["srdm"])),
+        doc: "search again in the row that the ray is in where the first was hit",
+    },
+    Param {
+        name: "silhouettes",
+        kind: Kind::Choice(&["skins", "gaps"]),
+        defaults: &["skins", "gaps"],
+        needs: None,
+        doc: "surfaces go on across silhouettes, or rays pass behind their rims, and are flagged",
+    },
+    Param {
+        name: "rays",
+        kind: Kind::Choice(&["central", "parallel"]),
+        defaults: &["central"],
+        needs: None,
+        doc: "depth images as seen from the reflector's middle (parallel where that is too near), or from far off \
+              that way",
+    },
+    Param {
+        name: "view",
+        kind: Kind::Choice(&["start", "now"]),
+        defaults: &["start", "now"],
+        needs: None,
+        doc: "taken as the objects stand when the animation starts, and kept (slide 39), or as they stand now",
+    },
+    Param {
+        name: "views",
+        kind: Kind::Integer { min: 1, max: 4 },
+        defaults: &["1", "2"],
+        needs: None,
+        doc: "depth images of each object, from all round it; flat things have one (slide 49, occlusion-resistant)",
+    },
+    Param {
+        name: "objects",
+        kind: Kind::Integer { min: 1, max: 64 },
+        defaults: &["16"],
+        needs: None,
+        doc: "most objects that impostors stand for, for each reflector those that look largest from it; the rest \
+              show the environment",
+    },
+    STAGE,
+];
