@@ -32,7 +32,7 @@ mod trace;
 use crate::error::{Error, Result};
 use crate::geometry::Projection;
 use crate::gpu::Frame;
-use crate::scene::{Lobe, ObjectId};
+use crate::scene::Lobe;
 use crate::stages::{GpuScene, MirroredEnvironment, ReflectionRecord, View};
 use crate::truth::Cache;
 

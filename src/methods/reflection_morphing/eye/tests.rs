@@ -42,7 +42,7 @@ impl Bench {
         };
         let extent = super::super::ray_map::extent(&scene.scene);
         let node = EyeNode::new(&setup, extent).unwrap();
-        let record = ReflectionRecord::new(&device, VIEW, RecordMode::Full).unwrap();
+        let record = ReflectionRecord::new(&device, VIEW, RecordMode::Full, 1).unwrap();
         Bench { node, record, scene, device }
     }
 
@@ -63,7 +63,7 @@ impl Bench {
         let bins = node.bins.build(&mut frame, scene, &camera, &mirror, record).unwrap();
         node.project(&mut frame, scene, (&camera, record), &bins, (source, corners)).unwrap();
         frame.submit().unwrap();
-        (corners.read().unwrap(), record.counters().unwrap())
+        (corners.read().unwrap(), record.counters(0).unwrap())
     }
 }
 
