@@ -24,16 +24,17 @@ impl Scene {
 }
 
 impl Scene {
-    /// The groups that the given reflectors are parts of, in the order they first appear, each with all its
-    /// reflectors, rising: parts of one thing share a map, and none stands in it, whoever else serves them.
-    pub fn groups(&self, reflectors: &[ObjectId]) -> Vec<(String, Vec<ObjectId>)> {
+    /// The groups that the given objects are parts of, in the order they first appear, each with all its
+    /// reflectors if given some, and all else if given that, rising: parts of one thing share a map, and none
+    /// stands in it, whoever serves the others.
+    pub fn groups(&self, objects: &[ObjectId]) -> Vec<(String, Vec<ObjectId>)> {
+        let kind = |id: ObjectId| (&self.objects[id as usize].group, self.is_reflector(id));
         let mut groups: Vec<(String, Vec<ObjectId>)> = Vec::new();
-        let group_of = |id: ObjectId| &self.objects[id as usize].group;
-        for group in reflectors.iter().map(|&id| group_of(id)) {
-            if groups.iter().all(|(name, _)| name != group) {
-                let mut members = self.reflectors();
-                members.retain(|&id| group_of(id) == group);
-                groups.push((group.clone(), members));
+        for &id in objects {
+            if groups.iter().all(|(_, members)| !members.contains(&id)) {
+                let all = 0..self.objects.len() as ObjectId;
+                let members = all.filter(|&other| kind(other) == kind(id)).collect();
+                groups.push((kind(id).0.clone(), members));
             }
         }
         groups
