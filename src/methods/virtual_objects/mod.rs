@@ -204,7 +204,10 @@ impl ReflectionMethod for VirtualObjects {
             if let Some(cubes) = &mut self.cubes {
                 cubes.draw(frame, scene, object)?;
             }
-            if self.cubes.is_none() || self.rule.clips {
+            if self.rule.all {
+                // Its edge ends branches as a fold does, so it needs no partner to go on in.
+                gbuffer.draw_open(frame, scene, "virtual-objects", object, &camera)?;
+            } else if self.cubes.is_none() || self.rule.clips {
                 gbuffer.draw(frame, scene, "virtual-objects", object, &camera)?;
             }
             let mirror = Mirror {
