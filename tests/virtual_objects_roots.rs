@@ -68,3 +68,15 @@ fn what_moves_through_the_focus_does_not_pop() {
     // Not by showing less.
     assert!(all.covered > 0.75 && all.covered > one.covered, "{about}");
 }
+
+#[test]
+fn open_mirrors_need_no_partner() {
+    let (session, scene) = (Session::open(), scene::load("open-sheet").unwrap());
+    // Its outside, and its inside, where it shows itself, too: those pixels are the second order's.
+    for at in [0, 96] {
+        let case = "virtual-objects@revised:roots=all,texture=64";
+        let accuracy = judged(&session, &scene, case, [64, 48], at).1;
+        let first = &accuracy.by_order[0];
+        assert!(first.order == 1 && first.bad_share.one < 0.02, "{at}: {accuracy:?}");
+    }
+}

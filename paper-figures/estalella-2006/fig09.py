@@ -17,7 +17,7 @@ CASES = {
     "all points": "virtual-objects@revised:roots=all",
     "ray traced": "truth",
 }
-COLUMNS = (("dish", 2), ("dish", 48), ("torus", 20), ("torus", 72))
+COLUMNS = (("dish", 2), ("dish", 60), ("torus", 20), ("torus", 72))
 SIZE = "160x120"
 
 

@@ -54,12 +54,10 @@ impl GBuffer {
         reflector: ObjectId,
         camera: &CameraUniform,
     ) -> Result<()> {
-        let pass = frame.pass(&format!("{name}/gbuffer")).graphics(&self.surfaces);
-        self.attach(scene.bind(pass).uniform("camera", camera))
-            .draw(|draw| scene.draw_closed(draw, reflector))
+        self.surfaces(frame, scene, name, camera).draw(|draw| scene.draw_closed(draw, reflector))
     }
 
-    /// The same of the reflector itself, whether it has a partner or not.
+    /// The same of the reflector itself, without a partner.
     pub fn draw_open(
         &self,
         frame: &mut Frame,
@@ -68,9 +66,18 @@ impl GBuffer {
         reflector: ObjectId,
         camera: &CameraUniform,
     ) -> Result<()> {
+        self.surfaces(frame, scene, name, camera).draw(|draw| scene.draw_object(draw, reflector))
+    }
+
+    fn surfaces<'f>(
+        &'f self,
+        frame: &'f mut Frame,
+        scene: &'f GpuScene,
+        name: &str,
+        camera: &CameraUniform,
+    ) -> Pass<'f> {
         let pass = frame.pass(&format!("{name}/gbuffer")).graphics(&self.surfaces);
         self.attach(scene.bind(pass).uniform("camera", camera))
-            .draw(|draw| scene.draw_object(draw, reflector))
     }
 
     /// Draw something else into it, in a pass whose shader has the same two targets.

@@ -148,7 +148,7 @@ struct State {
 fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     let &Setup { device, mode, size, .. } = setup;
     let rule = Rule::new(setup.values);
-    if rule.all && rule.cube.is_some() {
+    if (rule.all || rule.skirt > 0.0) && rule.cube.is_some() {
         return Err(Error::Usage(
             "roots=all searches what the eye sees of a reflector; it needs reflector_map=screen"
                 .into(),
@@ -216,6 +216,9 @@ impl ReflectionMethod for VirtualObjects {
             }
             if let Some(skirt) = self.skirt_of(scene, object) {
                 skirt.draw(frame, scene, object, &camera, gbuffer)?;
+            } else if self.rule.all {
+                // Its edge ends branches as a fold does, so it needs no partner to go on in.
+                gbuffer.draw_open(frame, scene, "virtual-objects", object, &camera)?;
             } else if self.cubes.is_none() || self.rule.clips {
                 gbuffer.draw(frame, scene, "virtual-objects", object, &camera)?;
             }

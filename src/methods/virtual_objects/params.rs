@@ -73,7 +73,7 @@ pub const PARAMS: &[Param] = &[
         name: "skirt",
         kind: Kind::Real { min: 0.0, max: 0.25 },
         defaults: &["0"],
-        needs: SCREEN,
+        needs: Some(("roots", &["one"])),
         doc: "open reflectors: how far their surface is carried on beyond its edge, for searches that leave it there, \
               as a share of the textures; 0: their closed partners are searched (5.1)",
     },

@@ -75,7 +75,7 @@ impl Rule {
             fitted: values.is("frustum", "fitted"),
             texture: values.forced_u32("texture"),
             widening: values.f32("widening"),
-            skirt: if cube.is_none() { values.f32("skirt") } else { 0.0 },
+            skirt: values.f32("skirt"),
             format: if fp16 { Format::Rgba16Float } else { Format::Rgba32Float },
             cube,
             forgets: !values.is("start", "previous"),
