@@ -56,7 +56,7 @@ const BANDS: [(&str, &str, [f64; 2]); 42] = [
     ("reflection-morphing:files=none", "two-spheres", [0.05, 0.5]),
     ("reflection-morphing:nodes=eye", "columns", [0.0, 0.03]),
     ("reflection-morphing:nodes=eye", "columns-moving", [0.0, 0.03]),
-    ("reflection-morphing:nodes=eye", "two-spheres", [0.03, 0.3]),
+    ("reflection-morphing:nodes=eye", "two-spheres", [0.002, 0.05]),
 ];
 
 #[test]
