@@ -150,7 +150,7 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     let rule = Rule::new(setup.values);
     if (rule.all || rule.skirt > 0.0) && rule.cube.is_some() {
         return Err(Error::Usage(
-            "roots=all searches what the eye sees of a reflector; it needs reflector_map=screen"
+            "roots=all and skirt search what the eye sees of a reflector; they need reflector_map=screen"
                 .into(),
         ));
     }
