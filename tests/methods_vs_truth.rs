@@ -14,7 +14,7 @@ const SIZE: [u32; 2] = [128, 96];
 
 /// A case, a scene, and the band its `bad_share` at 1 px lies in. Environment maps of a near scene
 /// are wrong nearly everywhere; what is right shows the environment or the far floor.
-const BANDS: [(&str, &str, [f64; 2]); 39] = [
+const BANDS: [(&str, &str, [f64; 2]); 44] = [
     ("environment-map", "sky", [0.0, 0.0]),
     ("environment-map", "columns", [0.3, 0.75]),
     ("environment-map", "patow-room", [0.8, 1.0]),
@@ -54,6 +54,11 @@ const BANDS: [(&str, &str, [f64; 2]); 39] = [
     ("explosion-map@revised", "kitchen-table1", [0.001, 0.1]),
     ("reflection-morphing:files=none", "columns", [0.03, 0.2]),
     ("reflection-morphing:files=none", "two-spheres", [0.05, 0.5]),
+    ("depth-impostors:size=256", "sky", [0.0, 0.0]),
+    ("depth-impostors:size=256", "statue", [0.01, 0.06]),
+    ("depth-impostors@revised:size=256", "statue", [0.0005, 0.006]),
+    ("depth-impostors@revised:size=256,step_deg=10", "columns", [0.001, 0.03]),
+    ("depth-impostors@revised:size=256,search=march", "statue", [0.0005, 0.006]),
 ];
 
 #[test]

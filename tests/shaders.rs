@@ -23,6 +23,8 @@ fn every_shader_compiles() {
             &[("RAY_QUERY", 1)],
             &[("RADIAL", 1)],
             &[("MISS_ENVIRONMENT", 1)],
+            &[("MARCH", 1)],
+            &[("SKINS", 1), ("RE_ANCHOR", 1), ("RECORD_FULL", 1)],
             &parts,
             &fragment[..1],
             &fragment,

@@ -14,7 +14,8 @@
 }
 
 @group(0) @binding(4) var<storage, read> portraits: array<Portrait>;
-// Of each layer: the jump of heights that is a silhouette, and the length of a texel, metres.
+// Of each layer: the jump of heights that is a silhouette, and the length of a texel's
+// longer side, metres.
 @group(0) @binding(5) var<storage, read> layer_limits: array<vec2<f32>>;
 @group(0) @binding(6) var portrait_radiance: texture_2d_array<f32>;
 @group(0) @binding(7) var portrait_point: texture_2d_array<f32>;
@@ -112,7 +113,8 @@ fn shown_at(place: vec2<f32>, layer: u32, portrait: Portrait) -> Shown {
         (1.0 - part.x) * part.y,
         part.x * part.y,
     );
-    // The evidence is the nearest texel's own point, never a blend across an edge.
+    // The evidence is the nearest texel's own point; that between four texels of one surface, never a blend
+    // across an edge.
     var best = -1.0;
     var nearest = 0u;
     for (var i = 0u; i < 4u; i += 1u) {
@@ -127,7 +129,16 @@ fn shown_at(place: vec2<f32>, layer: u32, portrait: Portrait) -> Shown {
     }
     shown.exists = true;
     shown.texel = corner + vec2(nearest & 1u, nearest >> 1u);
-    let own = textureLoad(portrait_point, shown.texel, layer, 0).xyz;
+    var own = textureLoad(portrait_point, shown.texel, layer, 0).xyz;
+    let least = min(min(heights.x, heights.y), min(heights.z, heights.w));
+    let most = max(max(heights.x, heights.y), max(heights.z, heights.w));
+    if least > 0.0 && most - least <= layer_limits[layer].x {
+        own = vec3(0.0);
+        for (var i = 0u; i < 4u; i += 1u) {
+            let texel = corner + vec2(i & 1u, i >> 1u);
+            own += weights[i] * textureLoad(portrait_point, texel, layer, 0).xyz;
+        }
+    }
     shown.point = portrait_to_world(portrait, own);
     let uv = place / f32(impostors.size);
     let blend = textureSampleLevel(portrait_radiance, linear_filter, uv, layer, 0.0);
@@ -150,7 +161,7 @@ fn met(line: ImageLine, layer: u32) -> Found {
 #ifdef MARCH
     return march(line, layer, layer_limits[layer].x);
 #else
-    let found = search_rows(line, layer);
+    let found = search_rows(line, layer, layer_limits[layer].x);
     rows_found += select(0u, 1u, found.row_exists);
     return found;
 #endif

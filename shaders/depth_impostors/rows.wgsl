@@ -53,6 +53,10 @@ fn nearest_height(layer: u32, place: vec2<f32>) -> f32 {
     return unpack2x16unorm(quads[at].x).x;
 }
 
+// Of the jump that is a silhouette: no farther behind one than this is its rim, which a surface goes on to
+// bend round.
+const RIM: f32 = 0.5;
+
 fn degenerate(line: ImageLine) -> bool {
     let across = line.end.xy - line.start.xy;
     return dot(across, across) < 1.0;
@@ -86,7 +90,7 @@ fn march(line: ImageLine, layer: u32, jump: f32) -> Found {
         crossed = crossed || was < 0.0 && above >= 0.0;
         let hit = crossed;
 #else
-        let hit = crossed && one;
+        let hit = crossed && (one || -above <= RIM * jump);
 #endif
         found.behind = found.behind || crossed && !one;
         if hit {
@@ -96,7 +100,7 @@ fn march(line: ImageLine, layer: u32, jump: f32) -> Found {
             part = select(part, 1.0, surface_before == 0.0);
             let met = mix(line.start, line.end, mix(share_before, share, part));
 #ifndef SKINS
-            found.behind = false;
+            found.behind = found.behind && !one;
 #endif
             found.hit = true;
             found.place = met.xy;
@@ -131,9 +135,28 @@ fn row_at(layer: u32, map: u32, y: f32) -> Row {
     return Row(row * impostors.segments, counts[row]);
 }
 
+// The first segment, in the ray's order, that ends beyond its start.
+fn first_beyond(row: Row, start: f32, forward: bool) -> u32 {
+    var low = 0u;
+    var high = row.count;
+    while low < high {
+        let middle = (low + high) / 2u;
+        let packed = segments[row.first + select(row.count - 1u - middle, middle, forward)];
+        segment_reads += 1u;
+        let ends = unpack2x16unorm(packed.x) * f32(impostors.size);
+        let end = select(-ends.x, ends.y, forward);
+        if end <= start {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
 // "First sign change" of the ray's height over the segments, from its start on; `x` and `height` are
 // those where it starts and ends.
-fn intersect(row: Row, x: vec2<f32>, height: vec2<f32>) -> RowHit {
+fn intersect(row: Row, x: vec2<f32>, height: vec2<f32>, jump: f32) -> RowHit {
     let forward = x.y > x.x;
     let sign = select(-1.0, 1.0, forward);
     let start = sign * x.x;
@@ -143,16 +166,13 @@ fn intersect(row: Row, x: vec2<f32>, height: vec2<f32>) -> RowHit {
     // Where the last segment ended, and how high above it the ray was.
     var left = -1.0e30;
     var above = 1.0;
-    for (var i = 0u; i < row.count; i += 1u) {
+    for (var i = first_beyond(row, start, forward); i < row.count; i += 1u) {
         let packed = segments[row.first + select(row.count - 1u - i, i, forward)];
         segment_reads += 1u;
         let ends = unpack2x16unorm(packed.x) * f32(impostors.size);
         let levels = unpack2x16unorm(packed.y);
         let across = sign * select(ends.yx, ends, forward);
         let level = select(levels.yx, levels, forward);
-        if across.y <= start {
-            continue;
-        }
         if across.x >= end {
             break;
         }
@@ -172,13 +192,16 @@ fn intersect(row: Row, x: vec2<f32>, height: vec2<f32>) -> RowHit {
 #endif
         hit.behind = hit.behind || skin;
 #ifdef SKINS
-        if skin {
+        let shown = skin;
+#else
+        let shown = skin && -at_start <= RIM * jump;
+#endif
+        if shown {
             // Just inside the texel at the silhouette.
             hit.hit = true;
             hit.x = sign * (s + min(0.25, 0.5 * (e - s)));
             return hit;
         }
-#endif
         if enters {
             hit.hit = true;
             hit.behind = false;
@@ -200,7 +223,7 @@ fn rotated(place: vec2<f32>, cosine: f32, sine: f32) -> vec2<f32> {
 
 // The row nearest to the ray: of the map rotated the nearest angle, the one through the middle of the ray's
 // part in the image. With `RE_ANCHOR` once more, in the row the ray is in where the first was hit.
-fn search_rows(line: ImageLine, layer: u32) -> Found {
+fn search_rows(line: ImageLine, layer: u32, jump: f32) -> Found {
     let across = line.end.xy - line.start.xy;
     let steps = atan2(across.y, across.x) / PI * f32(impostors.angles);
     let map = u32(i32(round(steps)) + 2 * i32(impostors.angles)) % impostors.angles;
@@ -218,11 +241,11 @@ fn search_rows(line: ImageLine, layer: u32) -> Found {
         return found;
     }
     found.row_exists = true;
-    var hit = intersect(row, x, height);
+    var hit = intersect(row, x, height, jump);
 #ifdef RE_ANCHOR
     if hit.hit {
         let at = mix(start.y, end.y, (hit.x - start.x) / (end.x - start.x));
-        let again = intersect(row_at(layer, map, at), x, height);
+        let again = intersect(row_at(layer, map, at), x, height, jump);
         // Where the ray's own row has nothing, the first was right but for its direction.
         if again.hit {
             hit = again;

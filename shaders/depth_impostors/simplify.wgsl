@@ -6,20 +6,19 @@
 @group(0) @binding(1) var<storage, read> samples: array<vec4<u32>>;
 // Segments in use of each row of all maps of all layers.
 @group(0) @binding(2) var<storage, read_write> counts: array<u32>;
-// `build.segments` a row.
+// `build.segments` a row. While a row is being simplified, its pieces from left to right: first and last
+// sample (16 bits each); where the segment between them errs most, and there by how much (0 once that is
+// within the tolerance). An array of the invocation's own would do, but lavapipe (Mesa 22.3) takes a
+// hundred times as long over those.
 @group(0) @binding(3) var<storage, read_write> segments: array<vec2<u32>>;
 
-// The error of a piece that has not been measured.
-const NEW: f32 = -1.0;
+// The second word of a piece that has not been measured.
+const NEW: u32 = 0xffffffffu;
 
-// Pieces from left to right: first and last sample (16 bits each), the largest error of the segment between
-// them (0 once within the tolerance), and where that is.
-var<private> spans: array<u32, 64>;
-var<private> errors: array<f32, 64>;
-var<private> worst: array<u32, 64>;
 var<private> count: u32;
-// Where the row begins in `samples`.
+// Where the row begins in `samples` and in `segments`.
 var<private> base: u32;
+var<private> slot: u32;
 
 fn sample_at(i: u32) -> f32 {
     let pair = unpack2x16unorm(samples[base + i / 8u][(i / 2u) & 3u]);
@@ -75,9 +74,8 @@ fn find_runs() {
                 let parted = before == 0.0 || abs(height - before) > build.jump;
                 if count == 0u || parted && count < build.segments {
                     if count > 0u {
-                        spans[count - 1u] = first | (last << 16u);
+                        segments[slot + count - 1u] = vec2(first | (last << 16u), NEW);
                     }
-                    errors[count] = NEW;
                     first = at;
                     count += 1u;
                 }
@@ -87,13 +85,14 @@ fn find_runs() {
         }
     }
     if count > 0u {
-        spans[count - 1u] = first | (last << 16u);
+        segments[slot + count - 1u] = vec2(first | (last << 16u), NEW);
     }
 }
 
-fn measure(piece: u32) {
-    let first = spans[piece] & 0xffffu;
-    let last = spans[piece] >> 16u;
+// The second word of the piece with this first one.
+fn measured(span: u32) -> u32 {
+    let first = span & 0xffffu;
+    let last = span >> 16u;
     let start = sample_at(first);
     let slope = (sample_at(last) - start) / f32(max(last - first, 1u));
     let end = f32(last) - f32(first);
@@ -121,81 +120,61 @@ fn measure(piece: u32) {
             at = 8u * block + select(which, 0u, off_low.x == largest);
         }
     }
-    errors[piece] = select(error, 0.0, at == first);
-    worst[piece] = at;
+    if at == first {
+        return 0u;
+    }
+    return at | (u32(max(65535.0 * error, 1.0)) << 16u);
 }
 
-// Leave only so many of the largest errors, of equal ones the first.
-fn spare_all_but(room: u32) {
-    var low = 0u;
-    var high = 0u;
-    for (var round = 0u; round < room; round += 1u) {
-        var best = 0u;
-        var error = 0.0;
-        for (var i = 0u; i < count; i += 1u) {
-            let chosen = select((high >> (i & 31u)) & 1u, (low >> (i & 31u)) & 1u, i < 32u);
-            if chosen == 0u && errors[i] > error {
-                best = i;
-                error = errors[i];
-            }
-        }
-        if best < 32u {
-            low |= 1u << (best & 31u);
-        } else {
-            high |= 1u << (best & 31u);
-        }
-    }
+// Measure what is new; the largest error of all.
+fn measure() -> u32 {
+    var largest = 0u;
     for (var i = 0u; i < count; i += 1u) {
-        let chosen = select((high >> (i & 31u)) & 1u, (low >> (i & 31u)) & 1u, i < 32u);
-        if chosen == 0u {
-            errors[i] = 0.0;
+        var piece = segments[slot + i];
+        if piece.y == NEW {
+            piece.y = measured(piece.x);
+            segments[slot + i] = piece;
         }
+        largest = max(largest, piece.y >> 16u);
     }
+    return largest;
 }
 
-// Split every piece that errs; false where none does.
-fn split() -> bool {
+// Split the pieces that err at least half as much as the worst, from the left on while there is room.
+fn split(largest: u32) {
     var erring = 0u;
     for (var i = 0u; i < count; i += 1u) {
-        erring += select(0u, 1u, errors[i] > 0.0);
+        erring += select(0u, 1u, 2u * (segments[slot + i].y >> 16u) >= largest);
     }
-    let room = min(build.segments - count, erring);
-    if room < erring {
-        spare_all_but(room);
-    }
+    let room = build.segments - count;
+    var spared = max(erring, room) - room;
     // From the right, so that each piece goes to its place at once.
-    var to = count + room;
+    var to = count + min(erring, room);
     for (var i = count; i > 0u; i -= 1u) {
-        let span = spans[i - 1u];
-        if errors[i - 1u] == 0.0 {
-            to -= 1u;
-            spans[to] = span;
-            errors[to] = 0.0;
-        } else {
-            let at = worst[i - 1u];
+        let piece = segments[slot + i - 1u];
+        let errs = 2u * (piece.y >> 16u) >= largest;
+        if errs && spared == 0u {
+            let at = piece.y & 0xffffu;
             to -= 2u;
-            spans[to + 1u] = at | (span & 0xffff0000u);
-            spans[to] = (span & 0xffffu) | (at << 16u);
-            errors[to + 1u] = NEW;
-            errors[to] = NEW;
+            segments[slot + to + 1u] = vec2(at | (piece.x & 0xffff0000u), NEW);
+            segments[slot + to] = vec2((piece.x & 0xffffu) | (at << 16u), NEW);
+        } else {
+            spared -= select(0u, 1u, errs);
+            to -= 1u;
+            segments[slot + to] = piece;
         }
     }
-    count += room;
-    return room > 0u;
+    count += min(erring, room);
 }
 
 // From sample centre to sample centre, on to the texel's border where the next piece does not begin with
 // the same sample.
-fn segment(piece: u32) -> vec2<u32> {
-    let first = spans[piece] & 0xffffu;
-    let last = spans[piece] >> 16u;
-    var ends = vec2(f32(first), f32(last) + 1.0);
-    if piece > 0u && spans[piece - 1u] >> 16u == first {
-        ends.x += 0.5;
-    }
-    if piece + 1u < count && (spans[piece + 1u] & 0xffffu) == last {
-        ends.y -= 0.5;
-    }
+fn segment(before: u32, span: u32, after: u32) -> vec2<u32> {
+    let first = span & 0xffffu;
+    let last = span >> 16u;
+    let low = select(0.0, 0.5, before >> 16u == first);
+    let high = select(1.0, 0.5, (after & 0xffffu) == last);
+    let ends = vec2(f32(first) + low, f32(last) + high);
     let heights = vec2(sample_at(first), sample_at(last));
     return vec2(pack2x16unorm(ends / f32(build.size)), pack2x16unorm(heights));
 }
@@ -205,21 +184,27 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= build.maps * build.size {
         return;
     }
+    let row = (build.layer * build.angles + build.first_map) * build.size + id.x;
     base = id.x * (build.size / 8u);
+    slot = row * build.segments;
     find_runs();
     while count > 0u && count < build.segments {
-        for (var i = 0u; i < count; i += 1u) {
-            if errors[i] == NEW {
-                measure(i);
-            }
-        }
-        if !split() {
+        let largest = measure();
+        if largest == 0u {
             break;
         }
+        split(largest);
     }
-    let row = (build.layer * build.angles + build.first_map) * build.size + id.x;
     counts[row] = count;
+    // No piece begins or ends there.
+    var before = NEW;
     for (var i = 0u; i < count; i += 1u) {
-        segments[row * build.segments + i] = segment(i);
+        let span = segments[slot + i].x;
+        var after = NEW;
+        if i + 1u < count {
+            after = segments[slot + i + 1u].x;
+        }
+        segments[slot + i] = segment(before, span, after);
+        before = span;
     }
 }

@@ -23,6 +23,10 @@ pub use simplify::simplify;
 /// Most segments a row can have.
 pub const MOST_SEGMENTS: u32 = 64;
 
+/// Of the jump that is a silhouette: no farther behind one than this is its rim, which a surface goes on to
+/// bend round.
+const RIM: f32 = 0.5;
+
 /// How many maps of what size, of how many segments a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RowShape {

@@ -3,7 +3,7 @@
 
 use glam::{Vec2, Vec3Swizzles};
 
-use super::{Heights, ImageLine};
+use super::{Heights, ImageLine, RIM};
 
 /// Where a march ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,13 +36,19 @@ pub fn march(heights: Heights, line: &ImageLine, jump: f32, skins: bool) -> Marc
         if crossed && !one {
             marched.behind = true;
         }
-        if crossed && (one || skins) {
+        if crossed && (one || skins || -is <= RIM * jump) {
             let part = was / (was - is);
             // A skin shows the side that has something to show.
-            let part = if before.1 == 0.0 { 1.0 } else if surface == 0.0 { 0.0 } else { part };
+            let part = if before.1 == 0.0 {
+                1.0
+            } else if surface == 0.0 {
+                0.0
+            } else {
+                part
+            };
             marched.share = before.0 + part * (share - before.0);
             marched.place = Some(line.at(marched.share).xy());
-            marched.behind &= skins;
+            marched.behind &= skins || !one;
             return marched;
         }
         before = (share, surface);

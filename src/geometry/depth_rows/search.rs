@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
-use super::{DepthRows, Packed, RowShape, Segment};
+use super::{DepthRows, Packed, RIM, RowShape, Segment};
 
 /// The part of a ray that a depth image can show: where it starts and ends, in texels and height. Between
 /// them it is straight.
@@ -22,10 +22,12 @@ impl ImageLine {
 }
 
 /// What is a hit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rule {
-    /// A surface goes on across silhouettes, as skins; otherwise a ray passes through there.
+    /// A surface goes on across silhouettes, as skins; otherwise a ray passes through there, but for their rim.
     pub skins: bool,
+    /// The step of heights that is a silhouette, see [`super::Limits`].
+    pub jump: f32,
     /// Look again in the row that the ray is in where the first one was hit.
     pub re_anchor: bool,
 }
@@ -88,11 +90,11 @@ pub fn search(rows: &DepthRows, line: &ImageLine, rule: Rule) -> Found {
     let mut found = Found::default();
     let Some(first) = row_at(rows, map, y) else { return found };
     found.row_exists = true;
-    let mut hit = intersect(first, &row, shape, rule.skins);
+    let mut hit = intersect(first, &row, shape, rule);
     found.reads = hit.reads;
     if let (Some(x), true) = (hit.x, rule.re_anchor) {
         y = start.y + share(x) * (end.y - start.y);
-        let again = row_at(rows, map, y).map(|second| intersect(second, &row, shape, rule.skins));
+        let again = row_at(rows, map, y).map(|second| intersect(second, &row, shape, rule));
         if let Some(again) = again {
             found.reads += again.reads;
             // Where the ray's own row has nothing, the first was right but for its direction.
@@ -118,23 +120,34 @@ fn row_at(rows: &DepthRows, map: u32, y: f32) -> Option<&[Packed]> {
 }
 
 /// "First sign change" of the ray's height over the segments, from its start on.
-pub fn intersect(row: &[Packed], line: &RowLine, shape: RowShape, skins: bool) -> RowHit {
+pub fn intersect(row: &[Packed], line: &RowLine, shape: RowShape, rule: Rule) -> RowHit {
+    let skins = rule.skins;
     let forward = line.x[1] > line.x[0];
     let sign = if forward { 1.0 } else { -1.0 };
     let [from, to] = line.x.map(|x| sign * x);
-    let mut hit = RowHit::default();
-    // Where the last segment ended, and how high above it the ray was.
-    let (mut left, mut above) = (f32::NEG_INFINITY, 1.0f32);
-    for i in 0..row.len() {
+    let in_order = |i: usize| {
         let packed = row[if forward { i } else { row.len() - 1 - i }];
-        hit.reads += 1;
         let segment = Segment::unpacked(packed, shape.size);
         let order = if forward { [0, 1] } else { [1, 0] };
-        let x = order.map(|end| sign * segment.x[end]);
-        let height = order.map(|end| segment.height[end]);
-        if x[1] <= from {
-            continue;
+        (order.map(|end| sign * segment.x[end]), order.map(|end| segment.height[end]))
+    };
+    let mut hit = RowHit::default();
+    // The first that ends beyond the ray's start.
+    let (mut low, mut high) = (0, row.len());
+    while low < high {
+        let middle = (low + high) / 2;
+        hit.reads += 1;
+        if in_order(middle).0[1] <= from {
+            low = middle + 1;
+        } else {
+            high = middle;
         }
+    }
+    // Where the last segment ended, and how high above it the ray was.
+    let (mut left, mut above) = (f32::NEG_INFINITY, 1.0f32);
+    for i in low..row.len() {
+        let (x, height) = in_order(i);
+        hit.reads += 1;
         if x[0] >= to {
             break;
         }
@@ -152,7 +165,7 @@ pub fn intersect(row: &[Packed], line: &RowLine, shape: RowShape, skins: bool) -
         };
         if before >= 0.0 && at_start < 0.0 || skins && before < 0.0 && at_start >= 0.0 {
             hit.behind = true;
-            if skins {
+            if skins || -at_start <= RIM * rule.jump {
                 // Just inside the texel at the silhouette.
                 hit.x = Some(sign * (s + 0.25f32.min(0.5 * (e - s))));
                 return hit;

@@ -7,8 +7,8 @@ use super::{Limits, MOST_SEGMENTS, Packed, Segment};
 struct Piece {
     first: u32,
     last: u32,
-    /// The largest error of its segment, 0 once that is within the tolerance; and where.
-    error: f32,
+    /// The largest error of its segment in 65535ths, 0 once that is within the tolerance; and where.
+    error: u32,
     worst: u32,
     is_new: bool,
 }
@@ -22,8 +22,8 @@ struct Pieces {
 /// Simplify a row into `segments`, at most as many as that has; how many they are.
 ///
 /// Silhouettes first: each run of samples of one surface is a piece (once there are as many as may be, the
-/// last runs on over what is left). Then all pieces are split at once where their segments err most, again
-/// and again, those that err most first where not all may be.
+/// last runs on over what is left). Then, again and again, the pieces that err at least half as much as the
+/// worst are split where they err most.
 pub fn simplify(samples: &[f32], limits: Limits, segments: &mut [Packed]) -> u32 {
     let most = segments.len().min(MOST_SEGMENTS as usize);
     let mut pieces = runs(samples, limits.jump, most);
@@ -33,9 +33,12 @@ pub fn simplify(samples: &[f32], limits: Limits, segments: &mut [Packed]) -> u32
                 measure(piece, samples, limits.tolerance);
             }
         }
-        if !pieces.split(most) {
+        let errors = pieces.list[..pieces.count].iter().map(|piece| piece.error);
+        let largest = errors.max().unwrap_or(0);
+        if largest == 0 {
             break;
         }
+        pieces.split(largest, most);
     }
     for (i, segment) in segments[..pieces.count].iter_mut().enumerate() {
         *segment = pieces.segment(i, samples).packed(samples.len() as u32);
@@ -65,61 +68,40 @@ fn measure(piece: &mut Piece, samples: &[f32], tolerance: f32) {
     let (first, last) = (piece.first, piece.last);
     let start = samples[first as usize];
     let slope = (samples[last as usize] - start) / (last - first).max(1) as f32;
-    (piece.error, piece.worst, piece.is_new) = (tolerance, first, false);
+    let (mut largest, mut worst) = (tolerance, first);
     for i in first + 1..last {
         let error = (samples[i as usize] - (start + slope * (i - first) as f32)).abs();
-        if error > piece.error {
-            (piece.error, piece.worst) = (error, i);
+        if error > largest {
+            (largest, worst) = (error, i);
         }
     }
-    if piece.worst == first {
-        piece.error = 0.0;
-    }
+    piece.error = if worst == first { 0 } else { (65535.0 * largest).max(1.0) as u32 };
+    (piece.worst, piece.is_new) = (worst, false);
 }
 
 impl Pieces {
-    /// Split every piece that errs; false where none does.
-    fn split(&mut self, most: usize) -> bool {
-        let erring = self.list[..self.count].iter().filter(|piece| piece.error > 0.0).count();
-        let room = (most - self.count).min(erring);
-        if room < erring {
-            self.spare_all_but(room);
-        }
+    /// Split the pieces that err at least half as much as the worst, from the left on while there is room.
+    fn split(&mut self, largest: u32, most: usize) {
+        let errs = |piece: &Piece| 2 * piece.error >= largest;
+        let erring = self.list[..self.count].iter().filter(|&piece| errs(piece)).count();
+        let splits = erring.min(most - self.count);
+        let mut spared = erring - splits;
         // From the right, so that each piece goes to its place at once.
-        let mut to = self.count + room;
+        let mut to = self.count + splits;
         for from in (0..self.count).rev() {
             let piece = self.list[from];
-            if piece.error == 0.0 {
+            if errs(&piece) && spared == 0 {
+                to -= 2;
+                let part = |first, last| Piece { first, last, is_new: true, ..Piece::default() };
+                self.list[to] = part(piece.first, piece.worst);
+                self.list[to + 1] = part(piece.worst, piece.last);
+            } else {
+                spared -= usize::from(errs(&piece));
                 to -= 1;
                 self.list[to] = piece;
-                continue;
-            }
-            to -= 2;
-            let part = |first, last| Piece { first, last, is_new: true, ..Piece::default() };
-            self.list[to] = part(piece.first, piece.worst);
-            self.list[to + 1] = part(piece.worst, piece.last);
-        }
-        self.count += room;
-        room > 0
-    }
-
-    /// Leave only the largest errors, of equal ones the first.
-    fn spare_all_but(&mut self, room: usize) {
-        let mut chosen = [false; MOST_SEGMENTS as usize];
-        for _ in 0..room {
-            let (mut best, mut error) = (0, 0.0);
-            for (i, piece) in self.list[..self.count].iter().enumerate() {
-                if !chosen[i] && piece.error > error {
-                    (best, error) = (i, piece.error);
-                }
-            }
-            chosen[best] = true;
-        }
-        for (piece, chosen) in self.list.iter_mut().zip(chosen) {
-            if !chosen {
-                piece.error = 0.0;
             }
         }
+        self.count += splits;
     }
 
     /// A piece's segment, from sample centre to sample centre, on to the texel's border where the next piece

@@ -57,8 +57,7 @@ fn lines(count: u32) -> Vec<ImageLine> {
     let mut random = SplitMix64::new(7);
     let middle = Vec2::splat(0.5 * SIZE as f32);
     let line = |_| {
-        let [turn, off, low, high] =
-            [(); 4].map(|_| random.within(Vec3::ZERO, Vec3::ONE).x);
+        let [turn, off, low, high] = [(); 4].map(|_| random.within(Vec3::ZERO, Vec3::ONE).x);
         let along = Vec2::from_angle(2.0 * PI * turn);
         let across = (off - 0.5) * 0.9 * SIZE as f32;
         let half = (middle.x * middle.x - across * across).sqrt() - 0.5;
@@ -167,9 +166,10 @@ fn a_ray_along_a_maps_rows_meets_what_a_march_meets() {
         let across = (line.end - line.start).xy();
         let middle = Vec2::splat(0.5 * SIZE as f32);
         let turn = (across.to_angle() / (PI / 9.0)).round() * (PI / 9.0) - across.to_angle();
-        let turned = |p: Vec3| (middle + Vec2::from_angle(turn).rotate(p.xy() - middle)).extend(p.z);
+        let turned =
+            |p: Vec3| (middle + Vec2::from_angle(turn).rotate(p.xy() - middle)).extend(p.z);
         let line = ImageLine { start: turned(line.start), end: turned(line.end) };
-        let rule = Rule { skins: false, re_anchor: false };
+        let rule = Rule { skins: false, re_anchor: false, jump: LIMITS.jump };
         let found = search(&rows, &line, rule);
         let marched = march(heights, &line, LIMITS.jump, false);
         if let (Some(found), Some(marched)) = (found.place, marched.place) {
@@ -188,7 +188,7 @@ fn lateral(step_deg: u32, re_anchor: bool) -> [f32; 2] {
     let rows = rows(&texels, shape(step_deg, 64));
     let (mut sum, mut bound, mut hits) = (0.0, 0.0, 0);
     for line in lines(4000) {
-        let found = search(&rows, &line, Rule { skins: false, re_anchor });
+        let found = search(&rows, &line, Rule { skins: false, re_anchor, jump: LIMITS.jump });
         let Some(place) = found.place else { continue };
         let along = (line.end - line.start).xy().normalize();
         let from_middle = line.at(0.5).xy() - place;
@@ -207,7 +207,7 @@ fn lateral(step_deg: u32, re_anchor: bool) -> [f32; 2] {
 
 /// How far beside the ray the row of the re-anchored hit passes where it was hit.
 fn rows_away(rows: &DepthRows, line: &ImageLine, share: f32) -> f32 {
-    let once = search(rows, line, Rule { skins: false, re_anchor: false });
+    let once = search(rows, line, Rule { skins: false, re_anchor: false, jump: LIMITS.jump });
     let across = (line.end - line.start).xy();
     let step = PI / rows.shape.angles as f32;
     let off = across.to_angle().rem_euclid(step);
@@ -238,7 +238,7 @@ fn skins_catch_what_passes_behind() {
     let line = ImageLine { start: Vec3::new(2.0, y, 0.5), end: Vec3::new(126.0, y, 0.4) };
     let back = ImageLine { start: line.end, end: line.start };
     for (line, edge) in [(line, 51.2), (back, 76.8)] {
-        let rule = Rule { skins: true, re_anchor: false };
+        let rule = Rule { skins: true, re_anchor: false, jump: LIMITS.jump };
         let skin = search(&rows, &line, rule).place.unwrap();
         let marched = march(heights, &line, LIMITS.jump, true).place.unwrap();
         assert!((skin.x - edge).abs() < 1.5 && (marched.x - edge).abs() < 1.5, "{skin} {marched}");
@@ -256,7 +256,8 @@ fn a_row_is_read_far_less_than_its_texels() {
     let heights = Heights { texels: &texels, size: SIZE };
     let [mut segments, mut marched] = [0, 0];
     for line in lines(1000) {
-        segments += search(&rows, &line, Rule { skins: false, re_anchor: true }).reads;
+        segments +=
+            search(&rows, &line, Rule { skins: false, re_anchor: true, jump: LIMITS.jump }).reads;
         marched += march(heights, &line, LIMITS.jump, false).reads;
     }
     assert!(2 * segments < marched, "{segments} segments, {marched} texels");

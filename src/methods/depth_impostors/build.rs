@@ -84,9 +84,8 @@ pub struct RowBuilder {
 
 impl RowBuilder {
     pub fn new(device: &Arc<Device>, shape: RowShape) -> Result<RowBuilder> {
-        let pipeline = |file: &str| {
-            ComputePipeline::new(device, &format!("depth_impostors/{file}.wgsl"), &[])
-        };
+        let pipeline =
+            |file: &str| ComputePipeline::new(device, &format!("depth_impostors/{file}.wgsl"), &[]);
         let texels = shape.size * shape.size;
         let batch = (MOST_SAMPLES / texels).clamp(1, shape.angles);
         Ok(RowBuilder {

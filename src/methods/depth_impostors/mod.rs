@@ -13,7 +13,7 @@
 //! device, so that images can follow what moves.
 //!
 //! Choices the slides leave to us: what a depth is (such that lines stay straight), the rule of simplifying
-//! (all of a row's worst pieces split at once), the ray's middle as where a row is chosen, what is a
+//! (the worst of a row's pieces split at once), the ray's middle as where a row is chosen, what is a
 //! silhouette (a fall ten times as deep as wide), and what has an impostor: whatever reflects nothing, those
 //! that look largest from a reflector first (`objects`). What is flat, floors and walls, has one image along
 //! its thinnest side, under parallel rays.
@@ -196,7 +196,7 @@ impl ReflectionMethod for DepthImpostors {
             let uniforms = frame.upload(&portraits.uniforms(scene))?;
             let limits: Vec<[f32; 2]> = (0..layers)
                 .filter_map(|layer| portraits.view(layer))
-                .map(|view| [sitter::limits(view, size).jump, sitter::texel(view, size)])
+                .map(|view| [sitter::limits(view, size).jump, sitter::texel(view, size)[1]])
                 .collect();
             let limits = frame.upload(&limits)?;
             let name = "depth-impostors/reflect";

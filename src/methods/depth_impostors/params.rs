@@ -51,7 +51,7 @@ pub const PARAMS: &[Param] = &[
         kind: Kind::Choice(&["skins", "gaps"]),
         defaults: &["skins", "gaps"],
         needs: None,
-        doc: "surfaces go on across silhouettes, or rays pass behind there, and are flagged",
+        doc: "surfaces go on across silhouettes, or rays pass behind their rims, and are flagged",
     },
     Param {
         name: "rays",

@@ -10,6 +10,9 @@ use crate::stages::{PortraitView, Sight, own_from_world, own_points};
 const FLAT: f32 = 0.05;
 /// Metres a surface may fall per metre across before it is two surfaces with a silhouette between them.
 const STEEPEST: f32 = 10.0;
+/// A texel is at most so many times as long as wide, or the other way round: limits are those of its narrower
+/// side.
+const LONGEST: f32 = 3.0;
 /// Of a texel: what rows may err by.
 const TOLERANCE: f32 = 0.25;
 
@@ -88,6 +91,7 @@ impl Sitter {
 
 /// The view widened until what it shows lies in the disc inscribed in the image, which rotation keeps.
 fn in_disc(mut view: PortraitView, points: &[Vec3]) -> PortraitView {
+    view.half = view.half.max(Vec2::splat(view.half.max_element() / LONGEST));
     let [right, up, towards] = view.axes;
     let reach = |&point: &Vec3| {
         let q = point - view.centre;
@@ -103,13 +107,13 @@ fn in_disc(mut view: PortraitView, points: &[Vec3]) -> PortraitView {
     view
 }
 
-/// The length of a texel in the plane of a view, metres.
-pub fn texel(view: &PortraitView, size: u32) -> f32 {
-    2.0 * view.half.max_element() / size as f32
+/// Lengths of a texel's narrower and wider side in the plane of a view, metres.
+pub fn texel(view: &PortraitView, size: u32) -> [f32; 2] {
+    [view.half.min_element(), view.half.max_element()].map(|half| 2.0 * half / size as f32)
 }
 
 /// What counts as one surface in a view's heights.
 pub fn limits(view: &PortraitView, size: u32) -> Limits {
-    let height = texel(view, size) / (2.0 * view.reach);
+    let height = texel(view, size)[0] / (2.0 * view.reach);
     Limits { tolerance: TOLERANCE * height, jump: STEEPEST * height }
 }

@@ -1,0 +1,328 @@
+//! Depth impostors (Popescu et al. 2006, slides 35 to 47): rows built on the device are the processor's, rays
+//! meet in shaders what they meet there, and the slides' claims.
+
+mod gpu_support;
+
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use gpu_support::{Session, engine, frame, judged, methods, options};
+use mirrorbench::experiment::engine::Engine;
+use mirrorbench::geometry::depth_rows::{
+    DepthRows, Heights, ImageLine, Limits, Packed, RowShape, Rule, Segment, march, search,
+};
+use mirrorbench::geometry::random::SplitMix64;
+use mirrorbench::gpu::{Buffer, ComputePipeline, Frame};
+use mirrorbench::methods::Case;
+use mirrorbench::methods::depth_impostors::build::{RowBuffers, RowBuilder};
+use mirrorbench::scene::{self, FrameRecord, Scene, Status};
+
+const SIZE: u32 = 128;
+const LIMITS: Limits = Limits { tolerance: 0.25 / 128.0, jump: 10.0 / 128.0 };
+const VIEW: [u32; 2] = [96, 72];
+
+/// A hilly sheet with a thing before it.
+fn landscape() -> Vec<f32> {
+    let middle = 0.5 * SIZE as f32;
+    let height = |p: Vec2| match p {
+        p if p.length() > 0.95 => 0.0,
+        p if (p - Vec2::new(0.3, 0.2)).length() < 0.2 => 0.8,
+        p => 0.3 + 0.1 * (7.0 * p.x).sin() * (5.0 * p.y).cos(),
+    };
+    // As shaders have them.
+    let packed = |height: f32| (height * 65535.0 + 0.5).floor() / 65535.0;
+    let at = |i: u32| Vec2::new((i % SIZE) as f32, (i / SIZE) as f32);
+    (0..SIZE * SIZE).map(|i| packed(height((at(i) + 0.5 - middle) / middle))).collect()
+}
+
+fn built(session: &Session, texels: &[f32], shape: RowShape) -> (RowBuffers, DepthRows) {
+    let device = session.device();
+    let heights = Heights { texels, size: SIZE };
+    let mut buffers = RowBuffers::new(device, shape, 1).unwrap();
+    buffers.quads = Buffer::with_data(device, "heights", &heights.quads()).unwrap();
+    let mut frame = Frame::new(device).unwrap();
+    frame.begin().unwrap();
+    let builder = RowBuilder::new(device, shape).unwrap();
+    builder.build(&mut frame, "test", &buffers, 0, LIMITS).unwrap();
+    frame.submit().unwrap();
+    (buffers, DepthRows::build(heights, shape, LIMITS))
+}
+
+/// The height of a row's segments at x, 0 where none is.
+fn height_at(row: &[Packed], x: f32) -> f32 {
+    let segments = row.iter().map(|&packed| Segment::unpacked(packed, SIZE));
+    let mut on = segments.filter(|segment| segment.x[0] <= x && x <= segment.x[1]);
+    on.next().map_or(0.0, |Segment { x: [a, b], height: [from, to] }| {
+        from + (to - from) * (x - a) / (b - a)
+    })
+}
+
+#[test]
+fn rows_built_on_the_device_are_the_processors() {
+    let session = Session::open();
+    let texels = landscape();
+    for segments in [8, 16, 32, 64] {
+        let shape = RowShape { size: SIZE, angles: 18, segments };
+        let (buffers, rows) = built(&session, &texels, shape);
+        let counts = buffers.counts.read::<u32>().unwrap();
+        let ours = DepthRows {
+            shape,
+            counts: counts[..shape.rows() as usize].to_vec(),
+            segments: buffers.segments.read::<Packed>().unwrap(),
+        };
+        let mut off = 0;
+        for row in 0..shape.rows() {
+            let at = (row / SIZE, row % SIZE);
+            let [a, b] = [ours.row(at.0, at.1), rows.row(at.0, at.1)];
+            assert_eq!(a.is_empty(), b.is_empty(), "row {at:?}");
+            let apart =
+                |i: u32| (height_at(a, i as f32 + 0.5) - height_at(b, i as f32 + 0.5)).abs();
+            off += (0..SIZE).filter(|&i| apart(i) > 2.0 * LIMITS.tolerance).count();
+        }
+        // Of two splits that are as good, either may be taken.
+        let share = off as f64 / f64::from(shape.rows() * SIZE);
+        assert!(share < 0.002, "{segments} segments: {share} of the samples differ");
+    }
+}
+
+/// Lines over the disc, downwards, whatever their direction.
+fn lines(count: u32) -> Vec<ImageLine> {
+    let mut random = SplitMix64::new(11);
+    let mut number = || random.within(Vec3::ZERO, Vec3::ONE).x;
+    let middle = 0.5 * SIZE as f32;
+    let mut line = || {
+        let along = Vec2::from_angle(std::f32::consts::TAU * number());
+        let across = 0.9 * (number() - 0.5) * SIZE as f32;
+        let half = (middle * middle - across * across).sqrt() - 0.5;
+        let origin = Vec2::splat(middle) + across * along.perp();
+        ImageLine {
+            start: (origin - half * along).extend(0.7 + 0.3 * number()),
+            end: (origin + half * along).extend(0.3 * number()),
+        }
+    };
+    (0..count).map(|_| line()).collect()
+}
+
+#[test]
+fn shaders_find_what_the_processor_finds() {
+    let session = Session::open();
+    let (device, texels) = (session.device(), landscape());
+    let shape = RowShape { size: SIZE, angles: 18, segments: 32 };
+    let (buffers, rows) = built(&session, &texels, shape);
+    // The same rows in both.
+    let segments = buffers.segments.read::<Packed>().unwrap();
+    let rows = DepthRows { counts: buffers.counts.read::<u32>().unwrap(), segments, ..rows };
+    let lines = lines(2048);
+    let inputs: Vec<Vec4> =
+        lines.iter().flat_map(|l| [l.start.extend(LIMITS.jump), l.end.extend(0.0)]).collect();
+    let given = Buffer::with_data(device, "inputs", &inputs).unwrap();
+    let forms: [&[&'static str]; 5] =
+        [&[], &["SKINS"], &["RE_ANCHOR"], &["MARCH"], &["MARCH", "SKINS"]];
+    for form in forms {
+        let defines: Vec<_> = form.iter().map(|&define| (define, 1)).collect();
+        let pipeline = ComputePipeline::new(device, "tests/depth_rows.wgsl", &defines).unwrap();
+        let answer = Buffer::storage(device, "outputs", 16 * lines.len() as u64).unwrap();
+        let mut frame = Frame::new(device).unwrap();
+        frame.begin().unwrap();
+        let pass = frame.pass("test/rows").compute(&pipeline);
+        let pass = pass.storage_struct("impostors", &[SIZE, shape.angles, shape.segments, 1]);
+        let pass = pass.buffer("quads", &buffers.quads);
+        let pass = pass.buffer("counts", &buffers.counts).optional();
+        let pass = pass.buffer("segments", &buffers.segments).optional();
+        let pass = pass.buffer("inputs", &given).buffer("outputs", &answer);
+        pass.over(lines.len() as u32).unwrap();
+        frame.submit().unwrap();
+        let said: Vec<Vec4> = answer.read().unwrap();
+        let skins = form.contains(&"SKINS");
+        let heights = Heights { texels: &texels, size: SIZE };
+        let same = |(line, said): (&ImageLine, &Vec4)| {
+            let (place, behind, reads) = if form.contains(&"MARCH") {
+                let marched = march(heights, line, LIMITS.jump, skins);
+                (marched.place, marched.behind, marched.reads)
+            } else {
+                let rule =
+                    Rule { skins, re_anchor: form.contains(&"RE_ANCHOR"), jump: LIMITS.jump };
+                let found = search(&rows, line, rule);
+                (found.place, found.behind, found.reads)
+            };
+            let bits = said.z as u32;
+            let near = place.is_none_or(|place| place.distance(said.xy()) < 0.1);
+            near && place.is_some() == (bits & 1 == 1)
+                && behind == (bits & 2 == 2)
+                && reads == said.w as u32
+        };
+        let alike = lines.iter().zip(&said).filter(|&pair| same(pair)).count();
+        // Where a ray is between two rows, or between two texels, rounding decides.
+        assert!(alike > 2000, "{form:?}: {alike} of {}", lines.len());
+    }
+}
+
+/// The share of pixels that show the same object, and if any the same point within a centimetre.
+fn agreement(a: &FrameRecord, b: &FrameRecord) -> f64 {
+    let pixels = a.reflector_pixels();
+    let same = |&&i: &&usize| {
+        let [x, y] = [a, b].map(|frame| (frame.record.ids[i].object, frame.record.point[i]));
+        x.0 == y.0 && (x.1.w == 0.0 || x.1.xyz().abs_diff_eq(y.1.xyz(), 0.01))
+    };
+    pixels.iter().filter(same).count() as f64 / pixels.len() as f64
+}
+
+fn statue() -> Scene {
+    scene::load("statue").unwrap()
+}
+
+#[test]
+fn either_build_draws_the_same_picture_and_each_twice() {
+    let session = Session::open();
+    let scene = statue();
+    let [cores, device, again] = ["cpu", "gpu", "gpu"].map(|build| {
+        frame(&session, &scene, &format!("depth-impostors:size=256,build={build}"), VIEW, 0)
+    });
+    let share = agreement(&cores, &device);
+    assert!(share > 0.995, "{share}");
+    assert_eq!(device.record.point, again.record.point);
+    assert_eq!(device.colour, again.colour);
+}
+
+#[test]
+fn rigid_motion_and_light_rebuild_nothing() {
+    // "Rigid body transformations, color updates, and reflector updates do not require reconstruction"
+    // (slide 39).
+    let session = Session::open();
+    let scene = statue();
+    let case = "depth-impostors:size=128,build=gpu";
+    let mut engine = engine(&session, &scene, case, &options(VIEW));
+    let built = |engine: &mut Engine, at: u32| {
+        let (_, times) = engine.frame(&scene.at(at), true).unwrap();
+        let names = times.prepare.iter().chain(&times.passes).map(|pass| pass.name.clone());
+        let names: Vec<String> = names.collect();
+        let has = |what: &str| names.iter().any(|name| name == &format!("depth-impostors/{what}"));
+        [has("portrait"), has("simplify"), has("portrait-light")]
+    };
+    assert_eq!(built(&mut engine, 0), [true, true, true]);
+    assert_eq!(built(&mut engine, 60), [false, false, true]);
+    // Images that follow what moves are built anew.
+    let mut engine = self::engine(&session, &scene, &format!("{case},view=now"), &options(VIEW));
+    assert_eq!(built(&mut engine, 0), [true, true, true]);
+    assert_eq!(built(&mut engine, 60), [true, true, true]);
+}
+
+#[test]
+fn re_anchoring_mends_what_few_angles_spoil() {
+    // Slide 46: "One rotated depth map every 20, 10, 3, and 2 degrees".
+    let session = Session::open();
+    let scene = statue();
+    let statues = scene.objects.iter().position(|o| o.name == "statue").unwrap() as u32;
+    let off = |step_deg: u32, re_anchor: &str| {
+        let case = format!(
+            "depth-impostors@revised:size=256,step_deg={step_deg},re_anchor={re_anchor},views=1"
+        );
+        let close = "depth-impostors@revised:size=256,search=march,views=1";
+        let [rows, marched] =
+            [case.as_str(), close].map(|case| frame(&session, &scene, case, [192, 144], 700));
+        let on = |f: &FrameRecord, i: usize| f.record.ids[i].object == statues;
+        let both = rows.reflector_pixels().into_iter().filter(|&i| on(&rows, i) && on(&marched, i));
+        let apart =
+            both.map(|i| rows.record.point[i].xyz().distance(marched.record.point[i].xyz()));
+        let apart: Vec<f32> = apart.collect();
+        assert!(apart.len() > 150, "{} pixels", apart.len());
+        apart.iter().sum::<f32>() / apart.len() as f32
+    };
+    let once = [20, 10, 3].map(|step| off(step, "off"));
+    assert!(once.is_sorted_by(|a, b| a > b), "{once:?}");
+    let again = [20, 10].map(|step| off(step, "on"));
+    for (once, again) in once.iter().zip(again) {
+        assert!(4.0 * again < *once, "{again} m after {once} m");
+    }
+}
+
+#[test]
+fn rows_are_read_four_times_less_than_the_image_at_equal_error() {
+    let session = Session::open();
+    let scene = statue();
+    let run = |case: &str, counter: &str| {
+        let mut engine = engine(&session, &scene, case, &options(VIEW));
+        let (tested, times) = engine.frame(&scene.at(0), true).unwrap();
+        let counted = |name: &str| {
+            let found = times.counters.iter().find(|(counter, _)| counter == name);
+            found.unwrap().1 as f64
+        };
+        let tracer = gpu_support::tracer(&scene, &scene.at(0));
+        let (accuracy, _) =
+            mirrorbench::measure::accuracy(&tracer.frame(VIEW), &tested, &tracer).unwrap();
+        // A ray that is a point in the image reads one texel either way.
+        let points = if counter == "texels" { counted("degenerate") } else { 0.0 };
+        let share = counted("rows") / (counted("rays") - counted("degenerate"));
+        (accuracy.bad_share.one, counted(counter) - points, share)
+    };
+    let (bad_rows, segments, share) = run("depth-impostors@revised:step_deg=10", "segments");
+    let (bad_march, texels, _) = run("depth-impostors@revised:search=march", "texels");
+    assert!(4.0 * segments < texels, "{segments} segments, {texels} texels");
+    assert!(bad_rows < bad_march + 0.002, "{bad_rows} and {bad_march}");
+    assert!(share > 0.9, "{share} of the rays have a row");
+}
+
+#[test]
+fn what_turns_away_is_lost_but_to_images_from_all_round() {
+    // ALGORITHMS T32: at frame 216 the statue shows the mirror its side, at 432 its back.
+    let session = Session::open();
+    let scene = statue();
+    let missing = |case: &str, at: u32| {
+        let (tested, _, maps) = judged(&session, &scene, case, [192, 144], at);
+        gpu_support::wrong(&tested, &maps)[0].len()
+    };
+    let [front, back] = [0, 432].map(|at| missing("depth-impostors:size=256,build=gpu", at));
+    assert!(back > 2 * front, "{front} pixels, {back} when turned");
+    let kept = "depth-impostors@revised:size=256,step_deg=10,view=start";
+    let [one, two] = [1, 2].map(|views| missing(&format!("{kept},views={views}"), 432));
+    assert!(2 * two < one, "{one} pixels, {two} with a second image");
+    let anew = missing("depth-impostors@revised:size=256,step_deg=10", 432);
+    assert!(anew <= two, "{anew} pixels, taken anew");
+}
+
+#[test]
+fn gaps_are_nearer_to_the_truth_than_skins_and_flagged() {
+    let session = Session::open();
+    let scene = statue();
+    let run = |silhouettes: &str| {
+        let case =
+            format!("depth-impostors@revised:size=256,step_deg=10,silhouettes={silhouettes}");
+        judged(&session, &scene, &case, [192, 144], 600)
+    };
+    let [(skins, by_skins, _), (gaps, by_gaps, maps)] = ["skins", "gaps"].map(run);
+    let [skins_bad, gaps_bad] = [by_skins, by_gaps].map(|accuracy| accuracy.bad_share.one);
+    assert!(gaps_bad < skins_bad, "{skins_bad} with skins, {gaps_bad} with gaps");
+    let flags = |f: &FrameRecord| {
+        f.reflector_pixels().into_iter().filter(|&i| f.record.ids[i].flag()).count()
+    };
+    assert_eq!(flags(&skins), 0);
+    assert!(flags(&gaps) > 0);
+    let [all, unflagged] = gpu_support::wrong(&gaps, &maps);
+    assert!(unflagged.len() < all.len(), "{} of {}", unflagged.len(), all.len());
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let session = Session::open();
+    let refused = |scene: &Scene, case: &str| {
+        let case = Case::parse(case, &methods()).unwrap();
+        Engine::new(session.device(), scene, &case, &methods(), &options(VIEW))
+            .err()
+            .unwrap()
+            .to_string()
+    };
+    let text = refused(&statue(), "depth-impostors:size=100");
+    assert!(text.contains("a multiple of 8"), "{text}");
+    assert!(Case::parse("depth-impostors:search=march,segments=8", &methods()).is_err());
+}
+
+#[test]
+fn beyond_the_impostors_there_is_the_environment() {
+    let (session, scene) = (Session::open(), statue());
+    let case = "depth-impostors:size=128,build=gpu,objects=1";
+    let drawn = frame(&session, &scene, case, VIEW, 0);
+    let ids = drawn.reflector_pixels().into_iter().map(|i| drawn.record.ids[i]);
+    let shown: Vec<_> = ids.collect();
+    assert!(shown.iter().all(|id| id.status() != Status::Missing));
+    let objects: std::collections::BTreeSet<_> =
+        shown.iter().filter(|id| id.status() == Status::Found).map(|id| id.object).collect();
+    assert_eq!(objects.len(), 1, "{objects:?}");
+}
