@@ -21,7 +21,7 @@ from mirrorfigures.figure import QUIET
 SIZE = 256
 CASE = f"depth-impostors@revised:objects=2,rays=parallel,size={SIZE},step_deg=10,view=start,views=1"
 # The floor is the first; a place and a direction in texels, and heights at the ray's ends as shares.
-LAYER, PLACE, TURN_DEG, HEIGHTS = 1, (138.0, 128.0), 14.5, (0.97, 0.3)
+LAYER, PLACE, TURN_DEG, HEIGHTS = 1, (138.0, 128.0), 14.5, (0.97, 0.02)
 STEP = np.radians(10.0)
 # The thickness shown over the width shown.
 THICK = 0.6
@@ -64,7 +64,7 @@ def draw(figure):
     for axis, what in ((left, "texels along the ray"), (right, "texels along the row")):
         axis.set(xlabel=what, ylabel="height, m", ylim=(-0.05 * top, 1.1 * top))
         axis.grid(color=GRID, lw=0.6)
-        axis.legend(fontsize=7.5, loc="lower left")
+        axis.legend(fontsize=7.5, loc="upper right")
     figure.plot = plot
     figure.number("texels read before the hit", texels)
     figure.number("segments of the row", read)
