@@ -18,14 +18,10 @@ from mirrorfigures.evidence import object_ids
 
 SCENE, FRAME, SIZE = "statue", 700, "480x360"
 STEPS = (20, 10, 3, 2)
-# Of @revised; the case's name leaves them out.
-DEFAULTS = {"re_anchor": "on", "step_deg": 3}
 
 
 def case(step, re_anchor):
-    pairs = {"re_anchor": re_anchor, "step_deg": step}
-    kept = [f"{key}={value}" for key, value in pairs.items() if value != DEFAULTS[key]]
-    return "depth-impostors@revised:" + ",".join(sorted([*kept, "size=256", "views=1"]))
+    return f"depth-impostors@revised:re_anchor={re_anchor},size=256,step_deg={step},views=1"
 
 
 def draw(figure):
