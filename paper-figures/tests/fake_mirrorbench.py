@@ -159,6 +159,20 @@ def gbuffer(case: str, width: int, height: int, frame: int) -> dict[str, dict[st
     }
 
 
+def portraits(size: int) -> dict[str, dict[str, np.ndarray]]:
+    """Two depth images by name: a floor and a ball, metres before the picture's plane."""
+    s, t = np.meshgrid(*((np.arange(size) + 0.5) / size * 2 - 1,) * 2)
+    square = 0.6 - s * s - t * t
+    heights = (0 * s, np.sqrt(np.maximum(square, 0)))
+    there = (np.ones_like(s), square > 0)
+    images = {}
+    for name, alphas in (("point", heights), ("albedo", there)):
+        images[name] = {
+            f"face{i}.{c}": np.ascontiguousarray(alpha, np.float32) for i, alpha in enumerate(alphas) for c in "RGBA"
+        }
+    return images
+
+
 def filmed(cases: list[str], width: int, height: int, frame: int) -> Image.Image:
     """A film's picture: the cases side by side."""
     drawn = [draw(case, width, height, frame) for case in cases]
@@ -177,6 +191,8 @@ def row(scene: str, case: str, size: list[int], frame: int, timed: bool, baselin
     objects = [names.format(i + 1) for i in range(FLOOR)] + ["floor", "mirror"]
     if scene == "patow-room":
         objects[:2] = ["quad", "hidden-quad"]
+    if scene == "statue":
+        objects[0] = "statue.default"
     scale = {"none": 1.0, "truth": 0.0}.get(case, 1.6 + 0.05 * len(case)) * (2 if timed else 1)
     accuracy = {
         "bad_share": {"0.5": 0.9, "1": 1.0 if case == "none" else 0.72 - 0.01 * len(case), "2": 0.5, "4": 0.3},
@@ -197,7 +213,8 @@ def row(scene: str, case: str, size: list[int], frame: int, timed: bool, baselin
     gpu = {"median": scale / 2, "min": scale / 2, "p95": scale / 2}
     waves = ("scene/deform", "scene/vertices") if "wobble" in scene else ()
     method = re.split("[:@]", case)[0]
-    steps = (*waves, "direct-view/shade", f"{method}/reflect")
+    builds = ("depth-impostors/rotate", "depth-impostors/simplify") if method == "depth-impostors" else ()
+    steps = (*waves, *builds, "direct-view/shade", f"{method}/reflect")
     return {
         "schema_version": 2, "run": "toy", "commit": "0123456789abcdef",
         "scene": {"name": scene, "hash": "0", "triangles": 12, "vertices": 8, "objects": objects},
@@ -264,6 +281,7 @@ def main() -> int:
         if args.command == "render":
             save(args.out / f"frame-{args.frame:04}.exr", draw(case, *size, args.frame))
             images = {"environment-map/ball": lambda: ball(64)}
+            images["depth-impostors/portrait"] = lambda: portraits(64)
             images["virtual-objects/gbuffer"] = lambda: gbuffer(case, *size, args.frame)
             if args.dump in images:
                 for name, layers in images[args.dump]().items():
