@@ -66,7 +66,8 @@ def trace(origin, direction):
 
 
 def draw(case: str, width: int, height: int, frame: int) -> dict[str, np.ndarray]:
-    eye = np.array([0.0, 1.6, 4.2 - 0.011 * frame])
+    # Never as far as the sphere, however late the frame.
+    eye = np.array([0.0, 1.6, 4.2 - 0.011 * min(frame, 240)])
     x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
     rays = np.stack([(x - width / 2) / height, (height / 2 - y) / height - 0.12, np.full(x.shape, -0.87)], -1)
     rays /= np.linalg.norm(rays, axis=-1, keepdims=True)
