@@ -14,7 +14,7 @@ const SIZE: [u32; 2] = [128, 96];
 
 /// A case, a scene, and the band its `bad_share` at 1 px lies in. Environment maps of a near scene
 /// are wrong nearly everywhere; what is right shows the environment or the far floor.
-const BANDS: [(&str, &str, [f64; 2]); 39] = [
+const BANDS: [(&str, &str, [f64; 2]); 45] = [
     ("environment-map", "sky", [0.0, 0.0]),
     ("environment-map", "columns", [0.3, 0.75]),
     ("environment-map", "patow-room", [0.8, 1.0]),
@@ -54,6 +54,12 @@ const BANDS: [(&str, &str, [f64; 2]); 39] = [
     ("explosion-map@revised", "kitchen-table1", [0.001, 0.1]),
     ("reflection-morphing:files=none", "columns", [0.03, 0.2]),
     ("reflection-morphing:files=none", "two-spheres", [0.05, 0.5]),
+    ("billboard-impostors", "sky", [0.0, 0.0]),
+    ("billboard-impostors", "columns", [0.08, 0.2]),
+    ("billboard-impostors", "two-spheres", [0.08, 0.25]),
+    ("billboard-impostors:size=256,map=256", "table", [0.08, 0.22]),
+    ("billboard-impostors@revised", "columns", [0.06, 0.17]),
+    ("billboard-impostors@revised", "two-spheres", [0.05, 0.18]),
 ];
 
 #[test]

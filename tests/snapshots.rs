@@ -15,7 +15,7 @@ use snapshot_support::{EDGE_SHARE, Picture, difference};
 const SIZE: [u32; 2] = [96, 64];
 
 /// Name, scene, case, frame.
-const SNAPSHOTS: [(&str, &str, &str, u32); 15] = [
+const SNAPSHOTS: [(&str, &str, &str, u32); 16] = [
     ("columns-environment-map", "columns", "environment-map", 40),
     ("patow-room-environment-map", "patow-room", "environment-map", 0),
     ("patow-room-index-surface", "patow-room", "environment-map:index=surface", 0),
@@ -30,6 +30,7 @@ const SNAPSHOTS: [(&str, &str, &str, u32); 15] = [
     ("lecture-screen-space", "lecture", "screen-space", 0),
     ("columns-explosion-map", "columns", "explosion-map@revised", 40),
     ("glass-sphere-ray-traced", "glass-sphere", "ray-traced", 0),
+    ("table-billboard-impostors", "table", "billboard-impostors:size=128,map=128", 0),
     ("hall-of-mirrors-ray-traced", "hall-of-mirrors", "ray-traced", 60),
 ];
 
