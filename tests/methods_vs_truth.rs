@@ -65,6 +65,12 @@ const BANDS: [(&str, &str, [f64; 2]); 50] = [
     ("depth-impostors@revised:size=256", "statue", [0.0005, 0.006]),
     ("depth-impostors@revised:size=256,step_deg=10", "columns", [0.001, 0.03]),
     ("depth-impostors@revised:size=256,search=march", "statue", [0.0005, 0.006]),
+    ("billboard-impostors", "sky", [0.0, 0.0]),
+    ("billboard-impostors", "columns", [0.08, 0.2]),
+    ("billboard-impostors", "two-spheres", [0.08, 0.25]),
+    ("billboard-impostors:size=256,map=256", "table", [0.08, 0.22]),
+    ("billboard-impostors@revised", "columns", [0.06, 0.17]),
+    ("billboard-impostors@revised", "two-spheres", [0.05, 0.18]),
 ];
 
 #[test]

@@ -144,6 +144,16 @@ fn wrong_lines_are_named_with_what_is_valid() {
             "test.toml:14: 1.5 is out of range; valid: 0 to 1",
         ),
         (
+            "mirror = { mirror = { reflectance = 1.0 } }",
+            "mirror = { mirror = { reflectance = 1.0, fade = { distance = 0.0 } } }",
+            "test.toml:14: 0 is out of range; valid: 1e-6 to 1e6",
+        ),
+        (
+            "material = \"mirror\"",
+            "material = \"mirror\"\nimpostor = { facing = [0, 0, 0] }",
+            "test.toml:20: facing has no direction; valid: a vector that is not zero",
+        ),
+        (
             "red = { colour = [1.0, 0.0, 0.0] }",
             "red = {}",
             "test.toml:15: material `red` needs one look; valid: one of colour, checker, grid, image, with a mirror or without, mirror alone, or glass alone",

@@ -16,6 +16,9 @@ fn every_shader_compiles() {
         let [second, refracted] = ["SECOND", "REFRACTED"].map(|define| {
             [&revised[..], &[define]].concat().into_iter().map(|d| (d, 1)).collect::<Vec<_>>()
         });
+        let billboards = ["BACKDROP", "MORPH", "FILTER_MIP", "ORIGIN_STORED", "LAST_DIFFUSE"];
+        let billboards: Vec<_> =
+            billboards.into_iter().chain(["RECORD_FULL"]).map(|define| (define, 1)).collect();
         for defines in [
             &[][..],
             &[("RECORD_FULL", 1)],
@@ -30,6 +33,9 @@ fn every_shader_compiles() {
             &fragment,
             &second,
             &refracted,
+            &billboards[..5],
+            &billboards,
+            &[("FADES", 1), ("BY_ANGLE", 1)],
         ] {
             if let Err(error) = shaders.check(file, defines) {
                 wrong.push(error.to_string());

@@ -31,6 +31,7 @@ const SNAPSHOTS: [(&str, &str, &str, u32); 16] = [
     ("columns-explosion-map", "columns", "explosion-map@revised", 40),
     ("statue-depth-impostors", "statue", "depth-impostors@revised:size=128,step_deg=10", 600),
     ("glass-sphere-ray-traced", "glass-sphere", "ray-traced", 0),
+    ("table-billboard-impostors", "table", "billboard-impostors:size=128,map=128", 0),
     ("hall-of-mirrors-ray-traced", "hall-of-mirrors", "ray-traced", 60),
 ];
 

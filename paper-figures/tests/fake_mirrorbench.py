@@ -19,7 +19,7 @@ NO_OBJECT = 0xFFFFFFFF
 COLOURS = np.array([[0.8, 0.1, 0.1], [0.1, 0.6, 0.1], [0.1, 0.2, 0.8], [0.8, 0.7, 0.1]])
 COUNTERS = (
     "fetches", "hits", "visits", "texels", "texels-again", "texels-skipped", "map-reads", "nodes", "triangles",
-    "evaluations", "halved", "no-room",
+    "evaluations", "halved", "no-room", "intersections", "most_intersections", "second_order",
 )  # fmt: skip
 FLOOR = len(COLOURS)
 MIRROR = FLOOR + 1

@@ -1,11 +1,9 @@
 enable primitive_index;
 // A picture of one object, without light: what light needs is stored with each texel, in the
 // object's own space, so that neither moving the object nor its light spoils the picture.
-#import bindings::portrait::{
-    Portrait, portrait_axes, portrait_clip, portrait_own_direction, portrait_own_position,
-}
-#import bindings::scene::{albedo, materials, objects}
-#import bindings::surface::{Surface, surface_vertex}
+#import bindings::portrait::{Portrait, portrait_axes, portrait_clip}
+#import bindings::scene::{albedo, materials, objects, vertices}
+#import bindings::surface::Surface
 
 @group(0) @binding(0) var<uniform> portrait: Portrait;
 
@@ -14,11 +12,14 @@ fn vertex(
     @builtin(vertex_index) index: u32,
     @builtin(instance_index) object: u32,
 ) -> Surface {
-    var out = surface_vertex(index, object);
-    // From here on position and normal are the picture's object's own.
-    out.position = portrait_own_position(portrait, out.position);
-    out.normal = portrait_own_direction(portrait, out.normal);
-    out.clip = portrait_clip(portrait, portrait_axes(portrait, out.position));
+    // Never through the world: a picture is the same to the last bit wherever its object stands.
+    let own = vertices[index];
+    var out: Surface;
+    out.position = own.position;
+    out.normal = own.normal;
+    out.uv = vec2(own.u, own.v);
+    out.object = object;
+    out.clip = portrait_clip(portrait, portrait_axes(portrait, own.position));
     return out;
 }
 

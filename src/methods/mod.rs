@@ -3,6 +3,7 @@
 //! To add one: a module here, its shader folder, one line in [`METHODS`], its tolerance rows in
 //! `tests/methods_vs_truth.rs` and its figures.
 
+mod billboard_impostors;
 pub mod case;
 pub mod depth_impostors;
 mod distance_impostor;
@@ -161,5 +162,6 @@ pub static METHODS: &[MethodInfo] = &[
     virtual_objects::INFO,
     explosion_map::INFO,
     reflection_morphing::INFO,
+    billboard_impostors::INFO,
     depth_impostors::INFO,
 ];

@@ -19,6 +19,7 @@ mod record;
 mod scene;
 mod scene_structure;
 mod scene_tree;
+mod shrink;
 mod view;
 
 pub use capture::{Capture, CaptureStage, CubeUniform};
@@ -39,4 +40,5 @@ pub use record::{RecordMode, ReflectionRecord};
 pub use scene::{GpuScene, Vertex};
 pub use scene_structure::SceneStructure;
 pub use scene_tree::{SceneTree, TreeKind, TreeLayout, TreeUpdate};
+pub use shrink::shrink;
 pub use view::{CameraUniform, View};

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Vec2, Vec3};
 
-use super::GpuScene;
+use super::{GpuScene, shrink};
 use crate::error::Result;
 use crate::gpu::{
     Attachments, ComputePipeline, Depth, Device, Format, Frame, GraphicsPipeline, Image, Load,
@@ -161,16 +161,10 @@ fn bounds(points: &[Vec3]) -> (Vec3, Vec3) {
     if points.is_empty() { (Vec3::ZERO, Vec3::ZERO) } else { (low, high) }
 }
 
-/// The points of an object, or of a group that moves as one, in the own space of its first: what a view
-/// is fitted to.
+/// The points of an object, or of a group, whose parts all have one pose, in own space: what a view is
+/// fitted to.
 pub fn own_points(scene: &Scene, moment: &Moment, objects: &[ObjectId]) -> Vec<Vec3> {
-    let Some(&first) = objects.first() else { return Vec::new() };
-    let from_world = own_from_world(moment, first);
-    let of = |&object: &ObjectId| {
-        let pose = from_world * moment.poses[object as usize];
-        let mesh = scene.mesh_at(moment, object);
-        mesh.positions.iter().map(|&p| pose.transform_point3(p)).collect::<Vec<_>>()
-    };
+    let of = |&object: &ObjectId| scene.mesh_at(moment, object).positions.clone();
     objects.iter().flat_map(of).collect()
 }
 
@@ -282,7 +276,7 @@ impl PortraitStage {
         })
     }
 
-    /// Take the picture of an object, or of a group that moves as one, into a layer. `name` begins the
+    /// Take the picture of an object, or of a group, whose parts all have one pose, into a layer. `name` begins the
     /// pass's name. [`PortraitStage::light`] has to follow before its light is looked up.
     pub fn take(
         &self,
@@ -326,17 +320,7 @@ impl PortraitStage {
             .store("radiance", &target.radiance)
             .slice("portraits", portraits)
             .over_pixels([target.size, target.size * layers])?;
-        for level in 1..target.radiance.levels {
-            let side = (target.size >> level).max(1);
-            frame
-                .pass(&format!("{name}/portrait-shrink"))
-                .compute(&self.shrink)
-                .sample("finer", &target.radiance)
-                .store_level("coarser", &target.radiance, level)
-                .uniform("level", &(level as i32 - 1))
-                .over_pixels([side, side * layers])?;
-        }
-        Ok(())
+        shrink(frame, &self.shrink, name, &target.radiance)
     }
 }
 

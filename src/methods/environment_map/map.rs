@@ -9,7 +9,9 @@ use super::super::{Setup, Values};
 use crate::error::Result;
 use crate::gpu::{ComputePipeline, Device, Format, Frame, Image, Pass, Sampler, Shape};
 use crate::scene::ObjectId;
-use crate::stages::{Capture, CaptureStage, GpuScene, SceneTree, TreeKind, TreeLayout, TreeUpdate};
+use crate::stages::{
+    Capture, CaptureStage, GpuScene, SceneTree, TreeKind, TreeLayout, TreeUpdate, shrink,
+};
 
 /// How directions are laid out in the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -235,17 +237,7 @@ impl MapMaker {
         let (Some(pipeline), Some([radiance, ..])) = (&self.shrink, map.images()) else {
             return Ok(());
         };
-        for level in 1..radiance.levels {
-            let [width, height] = radiance.size.map(|side| (side >> level).max(1));
-            frame
-                .pass("environment-map/shrink")
-                .compute(pipeline)
-                .sample("finer", radiance)
-                .store_level("coarser", radiance, level)
-                .uniform("level", &(level as i32 - 1))
-                .over_pixels([width, height * radiance.shape.layers()])?;
-        }
-        Ok(())
+        shrink(frame, pipeline, "environment-map", radiance)
     }
 }
 

@@ -1,0 +1,97 @@
+// How much of a billboard a pixel shows: its ray beside those of the neighbouring pixels, followed
+// along with it (ray differentials, Igehy 1999, by differences).
+#define_import_path billboard_impostors::footprint
+
+#import bindings::view::{MirrorPoint, mirror_point_at, reflector_id}
+#import billboard_impostors::boards::{
+    Meeting, Ray, board_surface, leaving_point, morphed, on_plane, outside_of, params, portraits,
+}
+#import bindings::portrait::portrait_place
+#import common::camera::seen_normal
+
+// The rays of the pixels to the right and below, or to the left and above.
+struct Neighbours {
+    rays: array<Ray, 2>,
+}
+
+fn neighbours_of(at: MirrorPoint) -> Neighbours {
+    var found: Neighbours;
+    found.rays[0] = neighbour(at, vec2(1, 0));
+    found.rays[1] = neighbour(at, vec2(0, 1));
+    return found;
+}
+
+// Where both sides show another reflector the pixel's own: a footprint without width.
+fn neighbour(at: MirrorPoint, step: vec2<i32>) -> Ray {
+    let size = vec2<i32>(textureDimensions(reflector_id));
+    for (var side = 0; side < 2; side += 1) {
+        let pixel = vec2<i32>(at.pixel) + (1 - 2 * side) * step;
+        if any(pixel < vec2(0)) || any(pixel >= size) {
+            continue;
+        }
+        if textureLoad(reflector_id, vec2<u32>(pixel), 0).x != at.reflector {
+            continue;
+        }
+        let beside = mirror_point_at(vec2<u32>(pixel));
+        if beside.departs {
+            return Ray(beside.position, beside.outgoing);
+        }
+    }
+    return Ray(at.position, at.outgoing);
+}
+
+// Where a ray meets the plane of a billboard, on its picture; `missed` behind it.
+fn place_on(layer: u32, ray: Ray, missed: vec2<f32>) -> vec2<f32> {
+    let q = on_plane(portraits[layer], ray);
+    return select(missed, portrait_place(portraits[layer], q.xy), q.z > 0.0);
+}
+
+// The mip level whose texels are as large as the footprint: by its area, as the longer side of a slanted one would
+// blur far beyond the shorter. Not so large that it reaches beyond the picture, where there is nothing to blur with.
+fn level_of(met: Meeting, beside: Neighbours) -> f32 {
+    let right = place_on(met.layer, beside.rays[0], met.place) - met.place;
+    let below = place_on(met.layer, beside.rays[1], met.place) - met.place;
+    let texels = params.size * params.size * abs(right.x * below.y - right.y * below.x);
+    let inside = min(met.place, 1.0 - met.place);
+    let room = log2(max(params.size * min(inside.x, inside.y), 1.0));
+    return clamp(0.5 * log2(max(texels, 1.0)), 0.0, min(room, params.coarsest));
+}
+
+// The same for the environment map, `size` texels along a face's side, looked up along `d`; a texel at the
+// middle of a face spans 2 / size.
+fn far_level(d: vec3<f32>, met: Meeting, beside: Neighbours, size: f32) -> f32 {
+    let right = far_direction(met, beside.rays[0]) - d;
+    let below = far_direction(met, beside.rays[1]) - d;
+    return 0.5 * log2(max(0.25 * size * size * length(cross(right, below)), 1.0));
+}
+
+// Where a neighbour looks the environment map up, morphed if its pixel's own ray is.
+fn far_direction(met: Meeting, ray: Ray) -> vec3<f32> {
+    if met.outside == 0.0 {
+        return ray.direction;
+    }
+    let q = on_plane(portraits[met.layer], ray);
+    let outside = min(outside_of(portraits[met.layer], q.xy), 1.0);
+    if q.z <= 0.0 {
+        return ray.direction;
+    }
+    return morphed(ray, q.z, outside);
+}
+
+// The neighbours' rays mirrored in a billboard, as its pixel's own ray is; one that leaves the picture
+// goes on along the pixel's own, `mirrored`.
+fn mirrored_neighbours(met: Meeting, beside: Neighbours, mirrored: Ray) -> Neighbours {
+    var on = beside;
+    for (var i = 0u; i < 2u; i += 1u) {
+        let ray = on.rays[i];
+        let q = on_plane(portraits[met.layer], ray);
+        let place = portrait_place(portraits[met.layer], q.xy);
+        let surface = board_surface(met.layer, place);
+        on.rays[i] = mirrored;
+        if q.z > 0.0 && any(surface.normal != vec3(0.0)) {
+            let direction = reflect(ray.direction, seen_normal(surface.normal, ray.direction));
+            on.rays[i] = Ray(leaving_point(ray, q.z, surface), direction);
+        }
+    }
+    return on;
+}
