@@ -50,36 +50,38 @@ fn main() {
     look_ups(&build(3.0));
 }
 
+/// The ray of a trace for a point.
+type LookUp = fn(&RayOctree, Vec3, u32) -> Option<u32>;
+
 fn look_ups(octree: &RayOctree) {
     let mut random = SplitMix64::new(1);
     // What a mirror shows lies in front of it.
     let [low, high] = [Vec3::new(-6.0, 0.0, 1.0), Vec3::new(6.0, 3.0, 6.0)];
     let points: Vec<Vec3> = (0..LOOK_UPS).map(|_| random.within(low, high)).collect();
-    let ask = |nearest: &(dyn Fn(Vec3) -> Option<u32> + Sync)| -> Vec<Option<u32>> {
-        points.par_iter().map(|&point| nearest(point)).collect()
+    let ask = |nearest: LookUp| -> Vec<Option<u32>> {
+        points.par_iter().map(|&point| nearest(octree, point, 1)).collect()
     };
     let start = Instant::now();
-    let by_all = ask(&|point| octree.nearest_of_all(point, 1));
+    let by_all = ask(RayOctree::nearest_of_all);
     let all_seconds = start.elapsed().as_secs_f64();
     let millions = |seconds: f64| 1e-6 * LOOK_UPS as f64 / seconds;
     println!(
         "{LOOK_UPS} look-ups 3 m away; {:.4} million a second by all rays",
         millions(all_seconds)
     );
-    let rules: [(&str, &(dyn Fn(Vec3) -> Option<u32> + Sync)); 2] = [
-        ("published, the point's leaf", &|point| octree.nearest(point, 1)),
-        ("revised, leaves near it", &|point| octree.nearest_of_near(point, 1)),
+    let rules: [(&str, LookUp); 2] = [
+        ("published, the point's leaf", RayOctree::nearest),
+        ("revised, leaves near it", RayOctree::nearest_of_near),
     ];
     for (name, rule) in rules {
         let (found, seconds) = best(|| ask(rule));
-        let share = |test: &dyn Fn((&Option<u32>, &Option<u32>)) -> bool| {
-            let such = found.iter().zip(&by_all).filter(|(by_rule, all)| test((by_rule, all)));
-            100.0 * such.count() as f64 / LOOK_UPS as f64
-        };
+        let same = found.iter().zip(&by_all).filter(|(by_rule, all)| by_rule == all).count();
+        let none = found.iter().filter(|found| found.is_none()).count();
+        let share = |count: usize| 100.0 * count as f64 / LOOK_UPS as f64;
         println!(
             "{name}: the nearest ray {:.2} %, none {:.2} %; {:.2} million a second, {:.0} times as many",
-            share(&|(by_rule, all)| by_rule == all),
-            share(&|(by_rule, _)| by_rule.is_none()),
+            share(same),
+            share(none),
             millions(seconds),
             all_seconds / seconds
         );
