@@ -17,8 +17,9 @@ struct Seen {
     point: vec3<f32>,
     // Metres from there to the point seen, along the trace.
     way: f32,
-    // The point lies within a bundle.
+    // The point lies within a bundle; or so near to one, at the rim, that the next ray may run there.
     within: bool,
+    known: bool,
 }
 
 fn texels() -> u32 {
@@ -44,7 +45,7 @@ fn before(ray: u32) -> vec4<f32> {
 fn seen_by_ray(point: vec3<f32>, nearest: u32) -> Seen {
     let first = before(nearest);
     let on = distance(segments[nearest].start, point);
-    return Seen(first.xyz, first.w + on, true);
+    return Seen(first.xyz, first.w + on, true, true);
 }
 
 #ifdef POINT_BUNDLE
@@ -145,13 +146,12 @@ fn seen_between(quad: Quad, place: vec2<f32>, point: vec3<f32>) -> Seen {
         first += weights[corner] * before(quad.rays[corner]);
         last += weights[corner] * segments[quad.rays[corner]].start;
     }
-    return Seen(first.xyz, first.w + distance(last, point), true);
+    return Seen(first.xyz, first.w + distance(last, point), true, true);
 }
 
-// Between four rays, beginning beside the nearest; through that one where the point lies in no bundle.
+// Between four rays, beginning beside the nearest.
 fn seen(point: vec3<f32>, nearest: u32) -> Seen {
-    var out = seen_by_ray(point, nearest);
-    out.within = false;
+    var out = Seen(vec3(0.0), 0.0, false, false);
     let like = segments[nearest];
     let texel = like.texel % texels();
     let face = texel / (octree.map * octree.map);

@@ -16,8 +16,8 @@ struct LookUp {
 @group(0) @binding(0) var<storage, read> look_up: LookUp;
 @group(0) @binding(1) var<storage, read> owners: array<u32>;
 @group(0) @binding(2) var<storage, read> asked: array<u32>;
-// w: 1 and the metres from there to the vertex along the trace, below zero where the vertex lies in no bundle
-// of rays; 0 where no ray was found.
+// w: 1 and the metres from there to the vertex along the trace, below zero where the vertex lies beside all
+// bundles of rays; 0 where it is not seen.
 @group(0) @binding(3) var<storage, read_write> points: array<vec4<f32>>;
 
 const LOOK_UPS: u32 = 0u;
@@ -38,7 +38,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var out = vec4(0.0);
     if found.found {
         let at = seen(position, found.ray);
-        out = vec4(at.point, select(-1.0, 1.0, at.within) * (1.0 + at.way));
+        if at.known {
+            out = vec4(at.point, select(-1.0, 1.0, at.within) * (1.0 + at.way));
+        }
     }
     points[look_up.first + vertex] = out;
     count(LOOK_UPS, 1u);

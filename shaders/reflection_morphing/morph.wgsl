@@ -36,10 +36,10 @@ fn morphed(sum: vec4<f32>, weight: f32, status: u32) -> Morphed {
 }
 
 #ifdef WEIGHTS_VALID
-// A location this far away hardly knows.
-const LEAST: f32 = 1e-6;
+// The eye sees what locations of this weight see.
+const MOST: f32 = 0.5;
 
-// From the locations that see the vertex, those in whose bundles it lies before others.
+// From the locations that see the vertex.
 fn interpolated(vertex: u32) -> Morphed {
     var within = vec4(0.0);
     var beside = vec4(0.0);
@@ -52,11 +52,11 @@ fn interpolated(vertex: u32) -> Morphed {
         beside += select(vec4(0.0), part, seen.w < 0.0);
         weights += select(vec2(0.0), vec2(weight), vec2(seen.w > 0.0, seen.w < 0.0));
     }
-    if weights.x > LEAST {
+    if weights.x >= MOST {
         return morphed(within, weights.x, SHOWN);
     }
-    if weights.y > LEAST {
-        return morphed(beside, weights.y, HIDDEN);
+    if weights.x + weights.y >= MOST {
+        return morphed(within + beside, weights.x + weights.y, HIDDEN);
     }
     return Morphed(vec3(0.0), 0.0, LOST);
 }

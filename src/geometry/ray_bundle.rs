@@ -27,7 +27,7 @@ pub struct Seen {
     pub point: Vec3,
     /// Metres from there to the point seen, along the trace.
     pub way: f32,
-    /// The point lies within a bundle.
+    /// The point lies within a bundle, not only so near to one, at the rim, that the next ray may run there.
     pub within: bool,
 }
 
@@ -105,11 +105,9 @@ impl RayTable {
         Seen { point: first, way: way + on, within: true }
     }
 
-    /// Between four rays, beginning beside the nearest; through that one where the point lies in no bundle.
-    pub fn seen(&self, rays: &[RaySegment], point: Vec3, nearest: u32) -> Seen {
-        let Some((quad, place, within)) = self.bundle(rays, point, nearest) else {
-            return Seen { within: false, ..self.seen_by_ray(rays, point, nearest) };
-        };
+    /// Between four rays, beginning beside the nearest.
+    pub fn seen(&self, rays: &[RaySegment], point: Vec3, nearest: u32) -> Option<Seen> {
+        let (quad, place, within) = self.bundle(rays, point, nearest)?;
         let mut seen = Seen { point: Vec3::ZERO, way: 0.0, within };
         let mut last = Vec3::ZERO;
         for (ray, weight) in quad.into_iter().zip(bilinear(place)) {
@@ -119,7 +117,7 @@ impl RayTable {
             last += weight * rays[ray as usize].start;
         }
         seen.way += last.distance(point);
-        seen
+        Some(seen)
     }
 
     /// The quad a point lies in, or is nearest to at the rim; where, and which of both.
