@@ -15,7 +15,7 @@ use snapshot_support::{EDGE_SHARE, Picture, difference};
 const SIZE: [u32; 2] = [96, 64];
 
 /// Name, scene, case, frame.
-const SNAPSHOTS: [(&str, &str, &str, u32); 16] = [
+const SNAPSHOTS: [(&str, &str, &str, u32); 17] = [
     ("columns-environment-map", "columns", "environment-map", 40),
     ("patow-room-environment-map", "patow-room", "environment-map", 0),
     ("patow-room-index-surface", "patow-room", "environment-map:index=surface", 0),
