@@ -77,6 +77,6 @@ fn open_mirrors_need_no_partner() {
         let case = "virtual-objects@revised:roots=all,texture=64";
         let accuracy = judged(&session, &scene, case, [64, 48], at).1;
         let first = &accuracy.by_order[0];
-        assert!(first.order == 1 && first.bad_share.one < 0.02, "{at}: {accuracy:?}");
+        assert!(first.order == 1 && first.group.bad_share.one < 0.02, "{at}: {accuracy:?}");
     }
 }
