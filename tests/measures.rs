@@ -414,11 +414,12 @@ fn the_fields_are_named_as_the_results_promise() {
         value.as_object().unwrap().keys().cloned().collect()
     };
     let expected = "bad_share covered missing spurious wrong_object wrong_depth unreachable \
-        footprint_mismatch displacement_px angle_deg relmse relmse_shading psnr flip by_order";
+        footprint_mismatch displacement_px angle_deg relmse relmse_shading psnr flip by_order by_reflector";
     assert_eq!(keys(&json), expected.split_whitespace().collect::<Vec<_>>());
     assert_eq!(keys(&json["bad_share"]), ["0.5", "1", "2", "4"]);
     assert_eq!(keys(&json["angle_deg"]), ["median", "p95", "max"]);
     assert_eq!(keys(&json["by_order"][0]), ["order", "share", "bad_share", "missing"]);
+    assert_eq!(keys(&json["by_reflector"][0]), ["reflector", "share", "bad_share", "missing"]);
     assert_eq!(keys(&json["flip"]), ["mean", "p95", "ppd", "exposure"]);
     assert_eq!(serde_json::from_value::<Accuracy>(json).unwrap(), accuracy);
 }

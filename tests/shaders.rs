@@ -12,13 +12,21 @@ fn every_shader_compiles() {
     for file in &files {
         let parts = [("TREE_PARTS", 1), ("NODES_OF_PART", 100), ("SLOTS_OF_PART", 50)];
         let fragment = [("STAGE_FRAGMENT", 1), ("RECORD_FULL", 1)];
+        let on = |names: &[&'static str]| names.iter().map(|&name| (name, 1)).collect::<Vec<_>>();
         let revised = ["HIDDEN_CLIP", "PYRAMID", "START_PYRAMID", "POINT_NEWTON"];
-        let [second, refracted] = ["SECOND", "REFRACTED"].map(|define| {
-            [&revised[..], &[define]].concat().into_iter().map(|d| (d, 1)).collect::<Vec<_>>()
-        });
-        let billboards = ["BACKDROP", "MORPH", "FILTER_MIP", "ORIGIN_STORED", "LAST_DIFFUSE"];
-        let billboards: Vec<_> =
-            billboards.into_iter().chain(["RECORD_FULL"]).map(|define| (define, 1)).collect();
+        let [second, refracted, roots] = ["SECOND", "REFRACTED", "ROOTS_ALL"]
+            .map(|define| on(&[&revised[..], &[define]].concat()));
+        let morphed = ["RAY_MAP", "POINT_BUNDLE", "LEAVES_NEIGHBOURS", "WEIGHTS_VALID"];
+        let [morphed, mixed, further] = ["RECORD_FULL", "TRACES_MIXED", "FURTHER"]
+            .map(|define| on(&[&morphed[..], &[define]].concat()));
+        let billboards = on(&[
+            "BACKDROP",
+            "MORPH",
+            "FILTER_MIP",
+            "ORIGIN_STORED",
+            "LAST_DIFFUSE",
+            "RECORD_FULL",
+        ]);
         for defines in [
             &[][..],
             &[("RECORD_FULL", 1)],
@@ -33,6 +41,10 @@ fn every_shader_compiles() {
             &fragment,
             &second,
             &refracted,
+            &roots,
+            &morphed,
+            &mixed,
+            &further,
             &billboards[..5],
             &billboards,
             &[("FADES", 1), ("BY_ANGLE", 1)],

@@ -18,9 +18,10 @@ struct Octree {
     segments: u32,
     // Texels along a side of the ray map's faces.
     map: u32,
-    pad_a: u32,
-    pad_b: u32,
-    pad_c: u32,
+    // The places that hold all rays of the trace, and 1 where they are few enough to be looked through.
+    first: u32,
+    end: u32,
+    scan: u32,
 }
 
 @group(0) @binding(40) var<storage, read> octree: Octree;
@@ -136,6 +137,14 @@ fn halves(point: vec3<f32>, corner: vec3<u32>, half: u32) -> Halves {
 // Of the leaves it can run through: the point's own, then those nearer than what was found, near ones first.
 fn nearest(point: vec3<f32>) -> Nearest {
     var out = Nearest(0u, false, 0u, 0.0);
+#ifndef TRACES_MIXED
+    if octree.scan == 1u {
+        for (var ray = octree.first; ray < octree.end; ray += 1u) {
+            out = nearer(out, ray, point);
+        }
+        return out;
+    }
+#endif
     var own = LEAF;
     if all(point >= octree.low) && all(point <= octree.high) {
         own = leaf_of(point);

@@ -16,6 +16,10 @@ use crate::methods::source::{Lists, Source};
 use crate::scene::{ObjectId, Scene};
 use crate::stages::{GpuScene, ReflectionRecord, View};
 
+/// Rays of a trace that are looked through one by one where leaves beside a vertex's own are searched: most leaves
+/// hold none of a rare trace, so nearly all of them would be opened.
+const MOST_SCANNED: usize = 512;
+
 /// WGSL `Octree` of `shaders/reflection_morphing/octree.wgsl`.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -25,7 +29,9 @@ struct OctreeStruct {
     high: [f32; 3],
     segments: u32,
     map: u32,
-    pads: [u32; 3],
+    first: u32,
+    end: u32,
+    scan: u32,
 }
 
 /// WGSL `LookUp` of `shaders/reflection_morphing/look_up.wgsl`.
@@ -184,13 +190,16 @@ impl Morph {
 impl Node {
     /// Bind it, with maps whose faces are `map` texels wide, to be asked for rays of one trace.
     fn bind<'f>(&self, pass: Pass<'f>, trace: Trace, map: u32) -> Pass<'f> {
+        let rays = self.rays_of(trace.packed);
         let octree = OctreeStruct {
             low: self.extent.low.to_array(),
             trace: trace.packed,
             high: self.extent.high.to_array(),
             segments: self.segment_count,
             map,
-            pads: [0; 3],
+            first: rays.start,
+            end: rays.end,
+            scan: u32::from(rays.len() <= MOST_SCANNED),
         };
         pass.storage_struct("octree", &octree)
             .buffer("cells", &self.cells)
@@ -215,7 +224,7 @@ mod tests {
     #[rustfmt::skip]
     fn structs_are_laid_out_as_their_wgsl_twins() {
         assert_layout!("reflection_morphing/look_up.wgsl", "Octree", OctreeStruct,
-            low, trace, high, segments, map);
+            low, trace, high, segments, map, first, end, scan);
         assert_layout!("reflection_morphing/look_up.wgsl", "RaySegment", RaySegment, start, trace, end, texel);
         assert_layout!("reflection_morphing/look_up.wgsl", "LookUp", LookUpStruct, total, first, reflector, pad);
         assert_layout!("reflection_morphing/morph.wgsl", "Morph", MorphStruct,

@@ -1,6 +1,7 @@
 //! The eight ray octrees round the eye, brought to the device as the eye goes from cell to cell.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::IVec3;
@@ -10,7 +11,7 @@ use super::grid::{Corner, Grid};
 use super::ray_map::RayMapper;
 use crate::error::Result;
 use crate::geometry::ray_bundle::RayTable;
-use crate::geometry::ray_octree::{Extent, RayOctree};
+use crate::geometry::ray_octree::{Extent, RayOctree, RaySegment};
 use crate::gpu::{Buffer, Device};
 use crate::scene::{Moment, Scene};
 use crate::truth::Cache;
@@ -26,8 +27,8 @@ pub struct Node {
     pub segment_count: u32,
     /// The ray map; where no look-up needs it, empty.
     pub map: Buffer,
-    /// Those of its rays.
-    traces: BTreeSet<u32>,
+    /// Those of its rays, each with the places among them that hold all of its own.
+    traces: BTreeMap<u32, Range<u32>>,
     /// Those by which the still vertices were looked up in it.
     pub asked: BTreeSet<u32>,
 }
@@ -43,6 +44,13 @@ pub struct Nodes {
     pub slots: [Option<Node>; 8],
 }
 
+impl Node {
+    /// The places among its rays that hold all of a trace.
+    pub fn rays_of(&self, trace: u32) -> Range<u32> {
+        self.traces.get(&trace).cloned().unwrap_or(0..0)
+    }
+}
+
 impl Nodes {
     pub fn new(recipe: Recipe, grid: Grid, files: Option<Cache>, mapped: bool) -> Nodes {
         Nodes { recipe, grid, files, mapped, slots: Default::default() }
@@ -55,7 +63,7 @@ impl Nodes {
 
     /// Whether any of them has rays of a trace.
     pub fn know(&self, trace: u32) -> bool {
-        self.slots.iter().flatten().any(|node| node.traces.contains(&trace))
+        self.slots.iter().flatten().any(|node| node.traces.contains_key(&trace))
     }
 
     /// Forget all: the reflectors are others.
@@ -126,8 +134,17 @@ impl Nodes {
             segments: Buffer::with_data(device, "octree rays", &octree.segments)?,
             segment_count: octree.segments.len() as u32,
             map: Buffer::with_data(device, "ray map", &table.unwrap_or_default())?,
-            traces: octree.segments.iter().map(|segment| segment.trace).collect(),
+            traces: ranges(&octree.segments),
             asked: BTreeSet::new(),
         })
     }
+}
+
+/// Where the rays of each trace are: those of an order lie together.
+fn ranges(segments: &[RaySegment]) -> BTreeMap<u32, Range<u32>> {
+    let mut ranges: BTreeMap<u32, Range<u32>> = BTreeMap::new();
+    for (place, segment) in (0..).zip(segments) {
+        ranges.entry(segment.trace).or_insert(place..place).end = place + 1;
+    }
+    ranges
 }
