@@ -7,7 +7,7 @@ from matplotlib.patches import Rectangle
 from . import images
 from .figure import Figure
 from .runs import Run, render
-from .text import accuracy_lines
+from .text import accuracy_lines, verdict
 
 FRAME_COLOURS = ("#e8590c", "#0b7285")
 """Of the close-ups; they stand out on light and dark alike."""
@@ -78,6 +78,15 @@ def contest(figure: Figure, truth: Run, left: tuple[str, Run], right: tuple[str,
     for label, ours, error in zip(labels, (pictures[0], pictures[2]), errors, strict=True):
         figure.compare(label, pictures[1], ours, images.heat(error, traced.mirror))
     figure.plot = plot
+
+
+def revision(figure: Figure, scene: str, published: str, revised: str, *, frame: int, size: str) -> None:
+    """A contest of two variants of a method on a frame of a scene, and how far each errs."""
+    truth, first, second = (
+        render(scene, case, frame=frame, size=size) for case in ("truth", published, revised)
+    )
+    contest(figure, truth, ("as published", first), ("revised", second))
+    figure.finding(f"Published: {verdict(first.row)} Revised: {verdict(second.row)}")
 
 
 def single(figure: Figure, run: Run, label: str) -> None:

@@ -8,19 +8,14 @@ Claim: "Results: depth image impostors"; an impostor has to provide fast constru
 a ray and antialiasing (slide 35).
 """
 
-from mirrorfigures import main, render
-from mirrorfigures.panels import contest
-from mirrorfigures.text import verdict
+from mirrorfigures import main
+from mirrorfigures.panels import revision
 
-FRAME, SIZE = 640, "480x360"
+CASES = "depth-impostors", "depth-impostors@revised:step_deg=10"
 
 
 def draw(figure):
-    truth = render("statue", "truth", frame=FRAME, size=SIZE)
-    published = render("statue", "depth-impostors", frame=FRAME, size=SIZE)
-    revised = render("statue", "depth-impostors@revised:step_deg=10", frame=FRAME, size=SIZE)
-    contest(figure, truth, ("as published", published), ("revised", revised))
-    figure.finding(f"Published: {verdict(published.row)} Revised: {verdict(revised.row)}")
+    revision(figure, "statue", *CASES, frame=640, size="480x360")
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ def draw(figure):
     figure.cite(run)
     cores = [row["prepare"]["cpu_ms"] for row in run.rows[: len(PUBLISHED)]]
     device = [on_device(row) for row in run.rows[len(PUBLISHED) :]]
-    plot, axis = plt.subplots(figsize=(5.6, 4.0), layout="constrained")
+    plot, axis = plt.subplots(figsize=(7.6, 4.0), layout="constrained")
     plot.get_layout_engine().set(rect=(0, 0.05, 1, 0.95))
     lines = {"slide 39": list(PUBLISHED.values()), "all cores, ours": cores, "device, ours": device}
     for (label, times), colour, marker in zip(lines.items(), COLOURS, "osD", strict=False):

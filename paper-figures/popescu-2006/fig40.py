@@ -9,19 +9,14 @@ Claim: "Results: depth image impostors"; an impostor has to provide fast constru
 a ray and antialiasing (slide 35).
 """
 
-from mirrorfigures import main, render
-from mirrorfigures.panels import contest
-from mirrorfigures.text import verdict
+from mirrorfigures import main
+from mirrorfigures.panels import revision
 
-FRAME, SIZE = 0, "480x360"
+CASES = "depth-impostors", "depth-impostors@revised:step_deg=10"
 
 
 def draw(figure):
-    truth = render("statue-knot", "truth", frame=FRAME, size=SIZE)
-    published = render("statue-knot", "depth-impostors", frame=FRAME, size=SIZE)
-    revised = render("statue-knot", "depth-impostors@revised:step_deg=10", frame=FRAME, size=SIZE)
-    contest(figure, truth, ("as published", published), ("revised", revised))
-    figure.finding(f"Published: {verdict(published.row)} Revised: {verdict(revised.row)}")
+    revision(figure, "statue-knot", *CASES, frame=0, size="480x360")
 
 
 if __name__ == "__main__":
