@@ -1,9 +1,11 @@
 """Depth image impostors: where they break (after slides 9 and 34).
 
 To be seen: Bad pixels among those that show the statue, by the truth or the case. Left, the statue turned before
-the mirror, its depth image kept as it was taken at 0 degrees: what it shows later was hidden then. Right, the
+the mirror, its depth image kept as it was taken at 0 degrees: what it shows later was hidden then. Middle, the
 gap between statue and mirror. As published; revised with images kept, one of each object and two; and a
-searched map of all surroundings, taken anew in every frame.
+searched map of all surroundings, taken anew in every frame. Right, parallax inside an object: a tube 0.5 m wide
+that opens towards a mirror ball 0.4 m away, as deep as the axis says; bad at 1 px, as a share of the tube's
+pixels. Billboards are beside them there.
 
 Claim: "No support for objects very close to the reflector"; "lack of motion parallax" (slide 34, of billboards).
 """
@@ -14,6 +16,7 @@ import numpy as np
 from mirrorfigures import main, render
 from mirrorfigures.charts import COLOURS, GRID, MARKERS
 from mirrorfigures.evidence import object_ids
+from mirrorfigures.variants import scene_file
 
 SIZE = "192x144"
 KEPT = "depth-impostors@revised:size=256,step_deg=10,view=start"
@@ -26,15 +29,49 @@ CASES = {
 # Degrees and metres, by frame.
 TURNS = {0: 0, 144: 60, 288: 120, 432: 180}
 GAPS = {480: 2.0, 600: 1.0, 660: 0.5, 720: 0.01}
+DEPTHS = (0.02, 0.1, 0.3, 0.8)
+INSIDE = {
+    "published": CASES["published"],
+    "revised": "depth-impostors@revised:size=256,step_deg=10",
+    "z-buffered map, revised": CASES["z-buffered map, revised"],
+    "billboard": "billboard-impostors",
+    "billboard, revised": "billboard-impostors@revised",
+}
+TUBE = """about = "made for a figure"
+[camera]
+fov_deg = 34.0
+eye = [1.6, 1.1, 2.6]
+target = [0.1, 0.8, 0.0]
+[lighting]
+ambient = [0.4, 0.4, 0.4]
+sun = [0.6, 0.6, 0.6]
+towards_sun = [-0.8, 0.4, 0.5]
+[environment]
+colour = [0.5, 0.6, 0.75]
+[materials]
+mirror = {{ mirror = {{ reflectance = 0.95 }} }}
+paint = {{ checker = {{ even = [0.8, 0.2, 0.15], odd = [0.8, 0.6, 0.2], size = [0.0625, 0.125] }} }}
+[[objects]]
+name = "ball"
+shape = {{ sphere = {{ radius = 0.6, slices = 128, stacks = 64 }} }}
+material = "mirror"
+position = [0.0, 0.8, 0.0]
+[[objects]]
+name = "tube"
+shape = {{ revolution = {{ profile = [[0.0, {deep}], [0.25, {deep}], [0.25, 0.0]], curve = "polyline", slices = 64 }} }}
+material = "paint"
+position = [1.0, 0.8, 0.0]
+rotation_deg = [0.0, 0.0, -90.0]
+"""
 # Metres between two points of the statue that are taken for one.
 NEAR = 0.03
 
 
 def draw(figure):
-    plot, axes = plt.subplots(1, 2, figsize=(9.0, 3.8), sharey=True, layout="constrained")
+    plot, axes = plt.subplots(1, 3, figsize=(12.8, 3.8), layout="constrained")
     plot.get_layout_engine().set(rect=(0, 0.05, 1, 0.95))
     rows = []
-    for axis, (places, label) in zip(axes, ((TURNS, "turned, degrees"), (GAPS, "gap, metres (log)")), strict=True):
+    for axis, (places, label) in zip(axes[:2], ((TURNS, "turned, degrees"), (GAPS, "gap, metres (log)")), strict=True):
         truths = [render("statue", "truth", frame=frame, size=SIZE) for frame in places]
         figure.cite(*truths)
         for (name, case), colour, marker in zip(CASES.items(), COLOURS, MARKERS, strict=False):
@@ -46,15 +83,44 @@ def draw(figure):
         axis.set(xlabel=label)
         axis.grid(color=GRID, lw=0.6)
     axes[1].set(xscale="log")
-    axes[0].set(ylabel="bad, % of the statue's pixels", ylim=(0, None))
-    axes[0].legend(fontsize=7.5)
+    axes[0].set(ylabel="bad, % of the statue's pixels")
+    rows += inside(figure, axes[2])
+    for axis in axes:
+        axis.set(ylim=(0, None))
+        axis.legend(fontsize=7)
     figure.plot = plot
-    figure.table("Bad, % of the statue's pixels", ["against", "case", "at the values above"], rows)
+    figure.table("Bad, % of the object's pixels", ["against", "case", "at the values above"], rows)
     turned = {name: said.split(", ")[-1] for label, name, said in rows if label.startswith("turned")}
     near = {name: said.split(", ")[-1] for label, name, said in rows if label.startswith("gap")}
+    deep = {name: said.split(", ")[-1] for label, name, said in rows if label.startswith("depth")}
     figure.finding(
-        "Turned by 180 degrees: " + listed(turned) + ". A centimetre from the mirror: " + listed(near) + "."
+        f"Turned by 180 degrees: {listed(turned)}. A centimetre from the mirror: {listed(near)}. "
+        f"{DEPTHS[-1]} m deep: {listed(deep)}."
     )
+
+
+def inside(figure, axis):
+    """Draws what is bad of a tube by its depth."""
+    rows = []
+    scenes = [scene_file("tube", TUBE.format(deep=deep)) for deep in DEPTHS]
+    truths = [render(scene, "truth", size=SIZE) for scene in scenes]
+    figure.cite(*truths)
+    for (name, case), colour, marker in zip(INSIDE.items(), COLOURS, MARKERS, strict=False):
+        runs = [render(scene, case, size=SIZE) for scene in scenes]
+        figure.cite(*runs)
+        bad = [100 * strayed(*pair) for pair in zip(runs, truths, strict=True)]
+        axis.plot(DEPTHS, bad, marker=marker, color=colour, ms=4, label=name)
+        rows.append(["depth, metres", name, ", ".join(f"{b:.1f}" for b in bad)])
+    axis.set(xlabel="depth of the tube, metres", ylabel="bad at 1 px, % of the tube's pixels")
+    axis.grid(color=GRID, lw=0.6)
+    return rows
+
+
+def strayed(run, truth):
+    """Pixels bad at 1 px over those in which the truth shows the tube; all else is of one colour."""
+    traced = truth.frame()
+    image = traced.shows(object_ids(run.row)["tube"]).sum()
+    return run.row["accuracy"]["bad_share"]["1"] * traced.mirror.sum() / max(image, 1)
 
 
 def listed(numbers):

@@ -25,6 +25,9 @@ const FORMATS: [Format; 4] =
     [Format::Rgba16Float, Format::Rgba32Float, Format::Rgba32Float, Format::Rg32Uint];
 /// Of an eye before the picture's plane: the nearest share of its distance at which it sees anything.
 const NEAREST: f32 = 0.05;
+/// Room before the nearest and behind the farthest point, so that neither lies on a plane that clips: the
+/// farthest would be taken for nothing.
+const ROOM: f32 = 1.001;
 /// No picture is thinner, metres.
 const THINNEST: f32 = 1e-4;
 
@@ -111,7 +114,7 @@ impl PortraitView {
             let q = *p - middle;
             Vec3::new(q.dot(right), q.dot(up), q.dot(towards))
         };
-        let reach = points.iter().map(|p| in_axes(p).z.abs()).fold(THINNEST, f32::max);
+        let reach = ROOM * points.iter().map(|p| in_axes(p).z.abs()).fold(THINNEST, f32::max);
         let axes = [right, up, towards];
         if reach < (1.0 - NEAREST) * eye_distance {
             // The eye stays straight before the middle.
@@ -357,7 +360,7 @@ mod tests {
                 for &point in &points {
                     let q = point - view.centre;
                     let depth = q.dot(towards);
-                    assert!(depth.abs() <= view.reach * 1.0001);
+                    assert!(depth.abs() < 0.9995 * view.reach, "inside, not on a plane that clips");
                     let spread = match sight {
                         Sight::Parallel => 1.0,
                         Sight::Central => view.eye_distance / (view.eye_distance - depth),
