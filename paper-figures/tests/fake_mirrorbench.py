@@ -20,9 +20,19 @@ COLOURS = np.array([[0.8, 0.1, 0.1], [0.1, 0.6, 0.1], [0.1, 0.2, 0.8], [0.8, 0.7
 COUNTERS = (
     "fetches", "hits", "visits", "texels", "texels-again", "texels-skipped", "map-reads", "nodes", "triangles",
     "evaluations", "halved", "no-room", "intersections", "most_intersections", "second_order",
+    "segments",
 )  # fmt: skip
 FLOOR = len(COLOURS)
 MIRROR = FLOOR + 1
+NAMED = {
+    "patow-room": {0: "quad", 1: "hidden-quad"},
+    "statue": {0: "statue.default"},
+    "slide9": {0: "statue.default"},
+    "standins": {FLOOR: "box"},
+    "border": {0: "near", FLOOR: "far"},
+    "tube": {0: "tube"},
+}
+"""Objects some figures ask for by name, by scene; of a scene made for a figure by the first word of its file."""
 FACES = [  # +X -X +Y -Y +Z -Z: forward, right, down of each face's image
     ((1, 0, 0), (0, 0, -1), (0, -1, 0)),
     ((-1, 0, 0), (0, 0, 1), (0, -1, 0)),
@@ -224,10 +234,9 @@ def save(path: Path, layers: dict[str, np.ndarray]) -> None:
 def row(scene: str, case: str, size: list[int], frame: int, timed: bool, baseline: str) -> dict:
     names = "particle-{}" if "particles" in scene else ["column-{}", "object-{}"][scene == "lecture"]
     objects = [names.format(i + 1) for i in range(FLOOR)] + ["floor", "mirror"]
-    if scene == "patow-room":
-        objects[:2] = ["quad", "hidden-quad"]
-    if scene == "statue":
-        objects[0] = "statue.default"
+    made_for = Path(scene).stem.split("-")[0]
+    for place, name in NAMED.get(scene, NAMED.get(made_for, {})).items():
+        objects[place] = name
     scale = {"none": 1.0, "truth": 0.0}.get(case, 1.6 + 0.05 * len(case)) * (2 if timed else 1)
     accuracy = {
         "bad_share": {"0.5": 0.9, "1": 1.0 if case == "none" else 0.72 - 0.01 * len(case), "2": 0.5, "4": 0.3},
