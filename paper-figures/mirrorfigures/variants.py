@@ -16,6 +16,37 @@ def scene_file(name: str, text: str) -> str:
     return str(path)
 
 
+def head(fov_deg: float, eye: tuple, target: tuple, checks: tuple) -> str:
+    """How a made scene begins: its camera, a light, a sky of one colour, the materials `mirror` and `paint`, which is checked."""
+    return f"""about = "made for a figure"
+[camera]
+fov_deg = {fov_deg}
+eye = {_vector(eye)}
+target = {_vector(target)}
+[lighting]
+ambient = [0.4, 0.4, 0.4]
+sun = [0.6, 0.6, 0.6]
+towards_sun = [0.4, 0.8, 0.5]
+[environment]
+colour = [0.5, 0.6, 0.75]
+[materials]
+mirror = {{ mirror = {{ reflectance = 0.95 }} }}
+paint = {{ checker = {{ even = [0.8, 0.2, 0.15], odd = [0.8, 0.6, 0.2], size = {_vector(checks)} }} }}
+"""
+
+
+def thing(name: str, shape: str, material: str, at: tuple, turned: tuple = (0, 0, 0), more: str = "") -> str:
+    """An object of a made scene; `turned` in degrees, `more` further lines of it."""
+    return (
+        f'[[objects]]\nname = "{name}"\nshape = {{ {shape} }}\nmaterial = "{material}"\n'
+        f"position = {_vector(at)}\nrotation_deg = {_vector(turned)}\n{more}"
+    )
+
+
+def _vector(values: tuple) -> str:
+    return "[" + ", ".join(f"{float(value):.6f}" for value in values) + "]"
+
+
 def changed(scene: str, old: str, new: str) -> str:
     """The path of a shipped scene with one passage of its text replaced, which must be there once."""
     text = (paths.SCENES / f"{scene}.toml").read_text(encoding="utf-8")

@@ -1,11 +1,11 @@
 """Popescu et al. 2006, slides 4 to 9: the problem, and the scene that stands in for the scene.
 
 To be seen: From above, at the height of the eye and of a mirror ball's centre, so that all rays lie in the plane. Top
-left, a pixel's four steps: eye ray to the mirror (1), mirrored ray (2), the point it meets (3), and what lies
-between the rays beside it, here some pixels apart, to be averaged (4). A rasteriser gives 1 and 2; 3 and 4 are the problem. The
-others, the same row of pixels with a stand-in for the scene: rays end where each method says that they do. The
-environment map takes rays for ones from its centre; the billboard shows what its picture has where the ray
-meets a quad through the box; the depth image is met where the box is.
+left, a pixel's four steps: eye ray to the mirror (1), mirrored ray (2), the point it meets (3), and what lies between
+the rays beside it, here some pixels apart, to be averaged (4). A rasteriser gives 1 and 2; 3 and 4 are the problem.
+The others, the same row of pixels with a stand-in for the scene: rays end where each method says that they do. The
+environment map takes rays for ones from its centre; the billboard shows what its picture has where the ray meets a
+quad through the box; the depth image is met where the box is.
 
 Claim: "Compute: intersection with reflector, reflected ray, intersection with reflected scene, antialiasing" (4), of
 which the first two are "OpenGL" and the others "???" (5); "reflected scene replaced with approximation that provides
@@ -22,37 +22,12 @@ from mirrorfigures.evidence import object_ids
 from mirrorfigures.exr import ENVIRONMENT
 from mirrorfigures.figure import INK, QUIET
 from mirrorfigures.plans import circle
-from mirrorfigures.variants import scene_file
+from mirrorfigures.variants import head, scene_file, thing
 
 SIZE = "481x361"
-EYE, CENTRE, RADIUS = np.array([0.4, 0.8, 4.0]), np.array([0.0, 0.8, 0.0]), 0.8
-BOX, SIDE, TURN = np.array([1.7, 1.1]), 0.7, np.radians(20.0)  # x and z of its middle
-SCENE = """about = "made for a figure"
-[camera]
-fov_deg = 32.0
-eye = [0.4, 0.8, 4.0]
-target = [0.4, 0.8, 0.0]
-[lighting]
-ambient = [0.4, 0.4, 0.4]
-sun = [0.6, 0.6, 0.6]
-towards_sun = [0.4, 0.8, 0.5]
-[environment]
-gradient = { zenith = [0.2, 0.4, 0.8], horizon = [0.9, 0.9, 0.9], nadir = [0.3, 0.2, 0.2] }
-[materials]
-mirror = { mirror = { reflectance = 0.95 } }
-red = { checker = { even = [0.8, 0.2, 0.15], odd = [0.8, 0.6, 0.2], size = [0.15, 0.15] } }
-[[objects]]
-name = "ball"
-shape = { sphere = { radius = 0.8, slices = 192, stacks = 96 } }
-material = "mirror"
-position = [0.0, 0.8, 0.0]
-[[objects]]
-name = "box"
-shape = { box = { size = [0.7, 1.0, 0.7] } }
-material = "red"
-position = [1.7, 0.8, 1.1]
-rotation_deg = [0.0, 20.0, 0.0]
-"""
+# Of the eye, the ball, and the box's middle: x and z; all at one height.
+EYE, RADIUS, HEIGHT = np.array([0.4, 4.0]), 0.8, 0.8
+BOX, SIDE, TURN_DEG = np.array([1.7, 1.1]), 0.7, 20.0
 CASES = {
     "environment map (7)": "environment-map",
     "billboard": "billboard-impostors",
@@ -63,7 +38,7 @@ EVERY = 6
 
 
 def draw(figure):
-    scene = scene_file("standins", SCENE)
+    scene = scene_file("standins", text())
     truth = render(scene, "truth", size=SIZE)
     runs = {name: render(scene, case, size=SIZE) for name, case in CASES.items()}
     figure.cite(truth, *runs.values())
@@ -96,8 +71,20 @@ def draw(figure):
 def outline():
     """The box's corners."""
     corners = SIDE / 2 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
-    sin, cos = np.sin(TURN), np.cos(TURN)
+    turn = np.radians(TURN_DEG)
+    sin, cos = np.sin(turn), np.cos(turn)
     return BOX + corners @ np.array([(cos, -sin), (sin, cos)])
+
+
+def text():
+    """A mirror ball and a box, the eye level with both."""
+    ball = f"sphere = {{ radius = {RADIUS}, slices = 192, stacks = 96 }}"
+    box = f"box = {{ size = [{SIDE}, 1.0, {SIDE}] }}"
+    return (
+        head(32.0, (EYE[0], HEIGHT, EYE[1]), (EYE[0], HEIGHT, 0), (0.15, 0.15))
+        + thing("ball", ball, "mirror", (0, HEIGHT, 0))
+        + thing("box", box, "paint", (BOX[0], HEIGHT, BOX[1]), (0, TURN_DEG, 0))
+    )
 
 
 class Row:
@@ -124,15 +111,15 @@ class Row:
 
 def steps(axis, traced, pixels):
     """One pixel's four steps, and its neighbours' rays."""
-    eye, middle = EYE[[0, 2]], pixels[len(pixels) // 2]
+    middle = pixels[len(pixels) // 2]
     wedge = [traced.ends(middle - EVERY), traced.ends(middle + EVERY)]
     corners = np.concatenate([wedge[0], wedge[1][::-1]])
     axis.fill(*corners.T, color=COLOURS[2], alpha=0.25, lw=0)
     for at in (middle - EVERY, middle, middle + EVERY):
-        path = np.concatenate([[eye], traced.ends(at)])
+        path = np.concatenate([[EYE], traced.ends(at)])
         axis.plot(*path.T, color=COLOURS[0] if at == middle else QUIET, lw=1.4 if at == middle else 0.7)
     start, end = traced.ends(middle)
-    along = start + 0.16 * (eye - start)
+    along = start + 0.16 * (EYE - start)
     for text, point, shift in (
         ("1", start, (-11, -3)),
         ("2", (start + end) / 2, (-2, 9)),

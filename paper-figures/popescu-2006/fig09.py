@@ -1,13 +1,13 @@
 """Popescu et al. 2006, slide 9: how near a mirror lets the eye come, and whether it hides an impostor's faults.
 
 To be seen: A statue 0.9 m before a mirror of one outline and any curvature (hollow below 0, flat, convex above). Top
-left, from how far the statue appears to be seen (the width on it between two pixels, over their angle) as the eye comes
-up to the mirror, measured on the truth (marks) and for narrow bundles (lines). A flat or convex mirror keeps the eye at
-least at the statue's own distance from it; a hollow one can do less. The others, one and the same impostor of the
-statue, in its place, over the curvature: how far its points are drawn from where they belong, in pixels and as a share of
-the image's width; what is not within a pixel of its place, as a share of the statue's image, what is shown beside the
-statue included; and FLIP over the image. At 0 the view is the one of an eye behind the mirror that sees the
-impostor directly.
+left, from how far the statue appears to be seen (the width on it between two pixels, over their angle) as the eye
+comes up to the mirror, measured on the truth (marks) and for narrow bundles (lines). A flat or convex mirror keeps
+the eye at least at the statue's own distance from it; a hollow one can do less. The others, one and the same impostor
+of the statue, in its place, over the curvature: how far its points are drawn from where they belong, in pixels and as
+a share of the image's width; what is not within a pixel of its place, as a share of the statue's image, what is shown
+beside the statue included; and FLIP over the image. At 0 the view is the one of an eye behind the mirror that sees
+the impostor directly.
 
 Claim: "Reflector surface prevents desired viewpoint from getting too close to the impostor"; "reflection distortion
 hides impostor artifacts".
@@ -22,7 +22,7 @@ from mirrorfigures import main, render
 from mirrorfigures.charts import COLOURS, GRID, MARKERS
 from mirrorfigures.evidence import displacement, object_ids
 from mirrorfigures.figure import INK
-from mirrorfigures.variants import scene_file
+from mirrorfigures.variants import head, scene_file, thing
 
 SIZE, FOV_DEG = "640x480", 30.0
 ASIDE = np.radians(20.0)  # of eye and statue from the mirror's axis
@@ -36,44 +36,18 @@ CASES = {
     "depth image": "depth-impostors:size=256",
     "depth image, revised": "depth-impostors@revised:size=256",
 }
-SCENE = """about = "made for a figure"
-bounces = 1
-[camera]
-fov_deg = {fov}
-eye = [{eye_x}, 0.0, {eye_z}]
-target = [0.0, 0.0, 0.0]
-[lighting]
-ambient = [0.4, 0.4, 0.42]
-sun = [0.7, 0.67, 0.6]
-towards_sun = [-0.4, 0.7, -0.5]
-[environment]
-colour = [0.5, 0.6, 0.75]
-[materials]
-mirror = {{ mirror = {{ reflectance = 0.95 }} }}
-paint = {{ checker = {{ even = [0.85, 0.62, 0.2], odd = [0.55, 0.12, 0.1], size = [0.1, 0.1] }} }}
-[[objects]]
-name = "mirror"
-shape = {{ revolution = {{ profile = {profile}, curve = "bezier", slices = 192, stacks = 64 }} }}
-material = "mirror"
-rotation_deg = [90.0, 0.0, 0.0]
-[[objects]]
-name = "statue"
-shape = {{ obj = {{ file = "models/statue.obj", crease_deg = 89.0 }} }}
-material = "paint"
-scale = 0.35
-position = [{statue_x}, -0.3, {statue_z}]
-rotation_deg = [0.0, 215.0, 0.0]
-"""
-
-
 def scene(curvature, away):
     """The statue, a mirror of that curvature, the eye so far from it."""
     side, front = np.sin(ASIDE), np.cos(ASIDE)
-    text = SCENE.format(
-        fov=FOV_DEG, eye_x=-away * side, eye_z=away * front, statue_x=GAP * side, statue_z=GAP * front,
-        profile=[[round(float(r), 6), round(float(y), 6)] for r, y in arc(curvature)],
-    )  # fmt: skip
-    return scene_file("slide9", text)
+    profile = [[round(float(r), 6), round(float(y), 6)] for r, y in arc(curvature)]
+    mirror = f'revolution = {{ profile = {profile}, curve = "bezier", slices = 192, stacks = 64 }}'
+    statue = 'obj = { file = "models/statue.obj", crease_deg = 89.0 }'
+    return scene_file(
+        "slide9",
+        head(FOV_DEG, (-away * side, 0, away * front), (0, 0, 0), (0.1, 0.1))
+        + thing("mirror", mirror, "mirror", (0, 0, 0), (90, 0, 0))
+        + thing("statue", statue, "paint", (GAP * side, -0.3, GAP * front), (0, 215, 0), "scale = 0.35\n"),
+    )
 
 
 def arc(curvature):
@@ -132,8 +106,8 @@ def told(figure, nearest, errors):
     said = "; ".join(f"{name} {found[flat]}, and {found[bent]}" for name, found in errors.items())
     came = ", ".join(f"{name} {least:.2f} m" for name, least in nearest.items())
     figure.finding(
-        f"The nearest the statue is seen from: {came}; it stands {GAP} m from the mirror. Seen directly, and in the convex "
-        f"mirror of 1 m (pixels, of the image's width, bad at 1 px, FLIP): {said}."
+        f"The nearest the statue is seen from: {came}; it stands {GAP} m from the mirror. Seen directly, and in the "
+        f"convex mirror of 1 m (pixels, of the image's width, bad at 1 px, FLIP): {said}."
     )
 
 
@@ -161,7 +135,7 @@ class Error:
         traced = truth.frame()
         moved, _ = displacement(run.frame(), traced, statue)
         image, accuracy = traced.shows(statue), run.row["accuracy"]
-        # The rest of the mirror is of one colour: what is wrong there is the statue's doing too.
+        # There is nothing else: what is wrong beside the statue is its doing too.
         times = traced.mirror.sum() / image.sum()
         mean = float(np.mean(moved))
         width = np.ptp(np.nonzero(image)[1])

@@ -53,7 +53,7 @@ def draw(figure):
         axis.grid(axis="x", color=GRID, lw=0.6)
         axis.set_axisbelow(True)
     axes[2].axvline(floor, color=INK, lw=1)
-    axes[2].annotate("truth, one ray", (floor, -0.5), xytext=(-4, 0), textcoords="offset points", ha="right", fontsize=8)
+    axes[2].text(floor, -0.5, "truth, one ray ", ha="right", fontsize=8)
     axes[0].set(ylim=(4.6, -0.8))
     figure.plot = plot
     table = [

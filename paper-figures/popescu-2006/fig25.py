@@ -1,11 +1,11 @@
 """Popescu et al. 2006, slides 25, 26 and 28: how ray morphing closes the border of a billboard, from a run.
 
-To be seen: From the side. A mirror ball over a floor whose near part is a billboard (thick) and whose rest the environment
-map shows; the eye is to the right, and all rays drawn lie in the plane. Above, without morphing: a ray that misses the
-billboard is looked up by its direction alone, as if it left the map's centre (dashed), so that the floor goes on
-elsewhere. Below, with it: in a margin of the billboard's plane the direction looked up turns from that of the plane's
-point, seen from the centre, to the ray's own. Right, the place shown by each pixel over the one that belongs there: a leap
-at the border, or a way round it.
+To be seen: From the side. A mirror ball over a floor whose near part is a billboard (thick) and whose rest the
+environment map shows; the eye is to the right, and all rays drawn lie in the plane. Above, without morphing: a ray
+that misses the billboard is looked up by its direction alone, as if it left the map's centre (dashed), so that the
+floor goes on elsewhere. Below, with it: in a margin of the billboard's plane the direction looked up turns from that
+of the plane's point, seen from the centre, to the ray's own. Right, the place shown by each pixel over the one that
+belongs there: a leap at the border, or a way round it.
 
 Claim: slides 25, 26 and 28 draw the morph; the transition becomes "continuous" (27).
 """
@@ -19,46 +19,16 @@ from mirrorfigures.charts import COLOURS, GRID
 from mirrorfigures.evidence import object_ids
 from mirrorfigures.figure import INK, QUIET
 from mirrorfigures.plans import circle
-from mirrorfigures.variants import scene_file
+from mirrorfigures.variants import head, scene_file, thing
 
 SIZE, MARGIN = "65x361", 0.3
 CENTRE, RADIUS, NEAR, FAR = np.array([0.0, 0.9]), 0.8, 1.7, 5.0
-SCENE = """about = "made for a figure"
-[camera]
-fov_deg = 26.0
-eye = [4.0, 2.2, 0.0]
-target = [0.3, 0.8, 0.0]
-[lighting]
-ambient = [0.4, 0.4, 0.4]
-sun = [0.6, 0.6, 0.6]
-towards_sun = [0.4, 0.8, 0.5]
-[environment]
-gradient = { zenith = [0.2, 0.4, 0.8], horizon = [0.9, 0.9, 0.9], nadir = [0.3, 0.2, 0.2] }
-[materials]
-mirror = { mirror = { reflectance = 0.95 } }
-floor = { checker = { even = [0.8, 0.2, 0.15], odd = [0.8, 0.6, 0.2], size = [0.25, 0.25] } }
-[[objects]]
-name = "ball"
-shape = { sphere = { radius = 0.8, slices = 192, stacks = 96 } }
-material = "mirror"
-position = [0.0, 0.9, 0.0]
-[[objects]]
-name = "near"
-shape = { plane = { size = [3.4, 3.4] } }
-material = "floor"
-[[objects]]
-name = "far"
-shape = { plane = { size = [3.3, 3.4] } }
-material = "floor"
-position = [3.35, 0.0, 0.0]
-impostor = "backdrop"
-"""
 # Of the pixels past the border, whose rays are drawn: every so many.
 EVERY = 9
 
 
 def draw(figure):
-    scene = scene_file("border", SCENE)
+    scene = scene_file("border", text())
     cases = {"truth": "truth", "cut": f"{METHOD}:morph=0,filter=bilinear"}
     cases["morphed"] = f"{METHOD}:morph={MARGIN},filter=bilinear"
     runs = {name: render(scene, case, size=SIZE) for name, case in cases.items()}
@@ -89,6 +59,20 @@ def draw(figure):
     figure.finding(
         f"Beside the border the place shown leaps by {leap['cut'][0]:.2f} m where the truth steps "
         f"{leap['cut'][1]:.2f} m; with morphing by {leap['morphed'][0]:.2f} m at most."
+    )
+
+
+def text():
+    """The ball over a floor of two parts."""
+    ball = f"sphere = {{ radius = {RADIUS}, slices = 192, stacks = 96 }}"
+    floor = "plane = {{ size = [{}, 3.4] }}"
+    return (
+        head(26.0, (4.0, 2.2, 0.0), (0.3, 0.8, 0.0), (0.25, 0.25))
+        + thing("ball", ball, "mirror", (*CENTRE, 0))
+        + thing("near", floor.format(2 * NEAR), "paint", (0, 0, 0))
+        + thing(
+            "far", floor.format(FAR - NEAR), "paint", ((NEAR + FAR) / 2, 0, 0), more='impostor = "backdrop"\n'
+        )
     )
 
 

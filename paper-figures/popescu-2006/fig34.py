@@ -14,7 +14,7 @@ import numpy as np
 from mirrorfigures import main, render
 from mirrorfigures.billboards import METHOD
 from mirrorfigures.charts import COLOURS, GRID, MARKERS
-from mirrorfigures.variants import scene_file
+from mirrorfigures.variants import head, scene_file, thing
 
 GAPS = (0.01, 0.1, 0.3, 1.0, 2.0)
 CASES = {
@@ -23,31 +23,7 @@ CASES = {
     "z-buffered map": "z-buffered-map@revised:size=256",
     "environment map": "environment-map",
 }
-HEAD = """about = "made for a figure"
-bounces = 4
-[camera]
-fov_deg = 40.0
-eye = [0.6, 1.6, 5.0]
-target = [0.3, 0.8, 0.0]
-[lighting]
-ambient = [0.4, 0.4, 0.4]
-sun = [0.6, 0.6, 0.6]
-towards_sun = [0.4, 0.8, 0.5]
-[environment]
-gradient = { zenith = [0.2, 0.4, 0.8], horizon = [0.9, 0.9, 0.9], nadir = [0.3, 0.2, 0.2] }
-[materials]
-mirror = { mirror = { reflectance = 0.95 } }
-red = { checker = { even = [0.8, 0.2, 0.15], odd = [0.8, 0.6, 0.2], size = [0.2, 0.2] } }
-"""
-
-
-def thing(name, shape, material, at):
-    return (
-        f'[[objects]]\nname = "{name}"\nshape = {{ {shape} }}\nmaterial = "{material}"\n'
-        f"position = [{at[0]:.3f}, {at[1]:.3f}, {at[2]:.3f}]\n"
-    )
-
-
+CHECKS = (0.2, 0.2)
 BALL = "sphere = { radius = 0.8, slices = 96, stacks = 48 }"
 SMALL = "sphere = { radius = 0.25, slices = 24, stacks = 12 }"
 WALL = "plane = { size = [6.0, 6.0] }"
@@ -56,24 +32,22 @@ BOX = "box = { size = [0.5, 0.5, 0.5] }"
 
 def gap_scene(gap):
     """A box beside a mirror ball, its face so far from the ball's surface."""
-    objects = thing("ball", BALL, "mirror", (0, 0.8, 0))
-    return scene_file("gap", HEAD + objects + thing("box", BOX, "red", (0.8 + gap + 0.25, 0.8, 0.3)))
+    ball = thing("ball", BALL, "mirror", (0, 0.8, 0))
+    box = thing("box", BOX, "paint", (0.8 + gap + 0.25, 0.8, 0.3))
+    return scene_file("gap", head(40.0, (0.6, 1.6, 5.0), (0.3, 0.8, 0.0), CHECKS) + ball + box)
 
 
 def grid_scene(diffuse, reflective):
     """Two flat mirrors, the eye between them, so that rays go to and fro; aside of those so many boxes, and mirror
     balls to make up the number."""
-    head = HEAD.replace("eye = [0.6, 1.6, 5.0]", "eye = [0.3, 0.1, 1.5]").replace(
-        "target = [0.3, 0.8, 0.0]", "target = [0.0, 0.0, -2.0]"
-    )
-    parts = [(f"box-{i}", BOX, "red") for i in range(diffuse)]
+    parts = [(f"box-{i}", BOX, "paint") for i in range(diffuse)]
     parts += [(f"ball-{i}", SMALL, "mirror") for i in range(reflective - 2)]
     aside = [(4.0 + i, 3.0, 0.0) for i in range(len(parts))]
-    walls = [("wall-1", WALL, "mirror", (0, 0, -2)), ("wall-2", WALL, "mirror", (0, 0, 2))]
-    turned = ["rotation_deg = [90.0, 0.0, 0.0]\n", "rotation_deg = [-90.0, 0.0, 0.0]\n"]
-    text = "".join(thing(*wall) + turn for wall, turn in zip(walls, turned, strict=True))
+    text = head(40.0, (0.3, 0.1, 1.5), (0.0, 0.0, -2.0), CHECKS)
+    text += thing("wall-1", WALL, "mirror", (0, 0, -2), (90, 0, 0))
+    text += thing("wall-2", WALL, "mirror", (0, 0, 2), (-90, 0, 0))
     text += "".join(thing(*part, at) for part, at in zip(parts, aside, strict=True))
-    return scene_file("grid", head + text)
+    return scene_file("grid", text)
 
 
 def draw(figure):

@@ -16,7 +16,7 @@ import numpy as np
 from mirrorfigures import main, render
 from mirrorfigures.charts import COLOURS, GRID, MARKERS
 from mirrorfigures.evidence import object_ids
-from mirrorfigures.variants import scene_file
+from mirrorfigures.variants import head, scene_file, thing
 
 SIZE = "192x144"
 KEPT = "depth-impostors@revised:size=256,step_deg=10,view=start"
@@ -37,32 +37,7 @@ INSIDE = {
     "billboard": "billboard-impostors",
     "billboard, revised": "billboard-impostors@revised",
 }
-TUBE = """about = "made for a figure"
-[camera]
-fov_deg = 34.0
-eye = [1.6, 1.1, 2.6]
-target = [0.1, 0.8, 0.0]
-[lighting]
-ambient = [0.4, 0.4, 0.4]
-sun = [0.6, 0.6, 0.6]
-towards_sun = [-0.8, 0.4, 0.5]
-[environment]
-colour = [0.5, 0.6, 0.75]
-[materials]
-mirror = {{ mirror = {{ reflectance = 0.95 }} }}
-paint = {{ checker = {{ even = [0.8, 0.2, 0.15], odd = [0.8, 0.6, 0.2], size = [0.0625, 0.125] }} }}
-[[objects]]
-name = "ball"
-shape = {{ sphere = {{ radius = 0.6, slices = 128, stacks = 64 }} }}
-material = "mirror"
-position = [0.0, 0.8, 0.0]
-[[objects]]
-name = "tube"
-shape = {{ revolution = {{ profile = [[0.0, {deep}], [0.25, {deep}], [0.25, 0.0]], curve = "polyline", slices = 64 }} }}
-material = "paint"
-position = [1.0, 0.8, 0.0]
-rotation_deg = [0.0, 0.0, -90.0]
-"""
+BALL = "sphere = { radius = 0.6, slices = 128, stacks = 64 }"
 # Metres between two points of the statue that are taken for one.
 NEAR = 0.03
 
@@ -102,7 +77,7 @@ def draw(figure):
 def inside(figure, axis):
     """Draws what is bad of a tube by its depth."""
     rows = []
-    scenes = [scene_file("tube", TUBE.format(deep=deep)) for deep in DEPTHS]
+    scenes = [scene_file("tube", tube(deep)) for deep in DEPTHS]
     truths = [render(scene, "truth", size=SIZE) for scene in scenes]
     figure.cite(*truths)
     for (name, case), colour, marker in zip(INSIDE.items(), COLOURS, MARKERS, strict=False):
@@ -116,8 +91,19 @@ def inside(figure, axis):
     return rows
 
 
+def tube(deep):
+    """Open towards a mirror ball."""
+    profile = f"[[0.0, {deep}], [0.25, {deep}], [0.25, 0.0]]"
+    shape = f'revolution = {{ profile = {profile}, curve = "polyline", slices = 64 }}'
+    return (
+        head(34.0, (1.6, 1.1, 2.6), (0.1, 0.8, 0.0), (0.0625, 0.125))
+        + thing("ball", BALL, "mirror", (0, 0.8, 0))
+        + thing("tube", shape, "paint", (1, 0.8, 0), (0, 0, -90))
+    )
+
+
 def strayed(run, truth):
-    """Pixels bad at 1 px over those in which the truth shows the tube; all else is of one colour."""
+    """Pixels bad at 1 px over those in which the truth shows the tube; there is nothing else."""
     traced = truth.frame()
     image = traced.shows(object_ids(run.row)["tube"]).sum()
     return run.row["accuracy"]["bad_share"]["1"] * traced.mirror.sum() / max(image, 1)
