@@ -35,8 +35,9 @@ class Camera:
 
 
 def description(scene: str) -> dict:
-    """A scene's file."""
-    return tomllib.loads((paths.SCENES / f"{scene}.toml").read_text(encoding="utf-8"))
+    """A scene's file: by its name, or by its path."""
+    file = paths.SCENES / f"{scene.removesuffix('.toml')}.toml"
+    return tomllib.loads(file.read_text(encoding="utf-8"))
 
 
 def camera(scene: str, frame: int, size: str) -> Camera:

@@ -17,6 +17,8 @@ CELL_M = 0.5
 
 _MORPH, _REFLECTED = "reflection-morphing/morph", "reflection-morphing/reflected"
 _BUFFERS = ((_MORPH, "corners"), (_MORPH, "points"), (_REFLECTED, "source_indices"))
+CASE = "reflection-morphing"
+"""Its case, where none is named."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,8 @@ class Morphed:
     """Where they are drawn."""
     valid: np.ndarray
     """True where all eight locations see them."""
+    within: np.ndarray
+    """True where all eight see them between rays, or by one; not beyond the last."""
     points: np.ndarray
     """8 x n x 3: where on the mirror each sampling location sees them."""
     triangles: np.ndarray
@@ -45,19 +49,19 @@ class Morphed:
         return weights(self.eye) @ self.points[:, vertex]
 
 
-def morphed(scene: str, frame: int, size: str) -> Morphed:
-    """A frame of a scene of one mirror."""
-    run = render(scene, "reflection-morphing", frame=frame, size=size, dump=tuple(":".join(one) for one in _BUFFERS))
+def morphed(scene: str, frame: int, size: str, case: str = CASE, dump: tuple[str, ...] = ()) -> Morphed:
+    """A frame of a scene of one mirror, by a case with nodes on a grid; the run has dumped `dump`, too."""
+    wanted = (*(":".join(one) for one in _BUFFERS), *dump)
+    run = render(scene, case, frame=frame, size=size, dump=wanted)
     corners, points, triangles = (
         np.load(Path(run.files) / "dump" / name / f"{variable}.npy") for name, variable in _BUFFERS
     )
     corners = corners.reshape(-1, 8).view(np.float32)
     points = points.view(np.float32).reshape(8, -1, 4)
     eye = camera(scene, frame, size).eye
-    seen = (points[:, :, 3] != 0).all(0)
-    return Morphed(
-        run, eye, corners[:, :3], corners[:, 4:7], seen, points[:, :, :3], triangles.reshape(-1, 3)
-    )
+    seen, within = (points[:, :, 3] != 0).all(0), (points[:, :, 3] > 0).all(0)
+    places, images = corners[:, :3], corners[:, 4:7]
+    return Morphed(run, eye, places, images, seen, within, points[:, :, :3], triangles.reshape(-1, 3))
 
 
 def locations(eye: np.ndarray) -> np.ndarray:

@@ -19,7 +19,7 @@ NO_OBJECT = 0xFFFFFFFF
 COLOURS = np.array([[0.8, 0.1, 0.1], [0.1, 0.6, 0.1], [0.1, 0.2, 0.8], [0.8, 0.7, 0.1]])
 COUNTERS = (
     "fetches", "hits", "visits", "texels", "texels-again", "texels-skipped", "map-reads", "nodes", "triangles",
-    "evaluations", "halved", "no-room", "intersections", "most_intersections", "second_order",
+    "evaluations", "halved", "no-room", "intersections", "most_intersections", "second_order", "look-ups", "rays",
     "segments",
 )  # fmt: skip
 FLOOR = len(COLOURS)
@@ -172,22 +172,25 @@ def dump(wanted: list[str], folder, case: str, size: list[int], frame: int) -> N
         elif ":" in name:
             file = folder / f"{name.replace(':', '/')}.npy"
             file.parent.mkdir(parents=True, exist_ok=True)
-            np.save(file, morphed()[file.stem])
+            np.save(file, morphed(case)[file.stem])
 
 
-def morphed() -> dict[str, np.ndarray]:
-    """Buffers of a grid of points before the mirror, all of them drawn; each pair of rows hides others."""
+def morphed(case: str) -> dict[str, np.ndarray]:
+    """Buffers of a grid of points before the mirror, all of them drawn, each case's a little apart; each pair of rows
+    hides others."""
     x, y, z = (a.ravel() for a in np.meshgrid((-0.5, 0.5), np.linspace(0.6, 2.4, 12), (1.5, 3.5)))
     vertices = np.stack([x, y, z], 1)
     towards = np.array([0.3, 1.6, 4.0]) - CENTRE
     out = (vertices - CENTRE) / np.linalg.norm(vertices - CENTRE, axis=1)[:, None] + towards / np.linalg.norm(towards)
     seen = CENTRE + RADIUS * out / np.linalg.norm(out, axis=1)[:, None]
-    images = CENTRE - 0.2 * (vertices - CENTRE)
+    images = CENTRE - (0.2 + 1e-4 * len(case)) * (vertices - CENTRE)
     empty = np.zeros((len(vertices), 1))
     corners = np.concatenate([vertices, empty, images, empty], 1).astype(np.float32)
     points = np.broadcast_to(np.concatenate([seen, empty + 1], 1), (8, len(vertices), 4)).astype(np.float32)
     triangles = np.stack([np.arange(40), np.arange(40) + 1, np.arange(40) + 2], 1).astype(np.uint32)
     words = {"corners": corners, "points": points, "source_indices": triangles}
+    lists = np.arange(9, dtype=np.uint32)
+    words |= {"cells": lists, "starts": lists, "lists": lists[:8], "segments": np.zeros((4, 8), np.uint32)}
     return {name: np.ascontiguousarray(a).ravel().view(np.uint32) for name, a in words.items()}
 
 
@@ -234,6 +237,8 @@ def save(path: Path, layers: dict[str, np.ndarray]) -> None:
 def row(scene: str, case: str, size: list[int], frame: int, timed: bool, baseline: str) -> dict:
     names = "particle-{}" if "particles" in scene else ["column-{}", "object-{}"][scene == "lecture"]
     objects = [names.format(i + 1) for i in range(FLOOR)] + ["floor", "mirror"]
+    if "columns-" in scene:
+        objects.append("column-6")
     made_for = Path(scene).stem.split("-")[0]
     for place, name in NAMED.get(scene, NAMED.get(made_for, {})).items():
         objects[place] = name
@@ -261,7 +266,8 @@ def row(scene: str, case: str, size: list[int], frame: int, timed: bool, baselin
     waves = ("scene/deform", "scene/vertices") if "wobble" in scene else ()
     method = re.split("[:@]", case)[0]
     builds = ("depth-impostors/rotate", "depth-impostors/simplify") if method == "depth-impostors" else ()
-    steps = (*waves, *builds, "direct-view/shade", f"{method}/reflect")
+    asks = ("look-up-still", "look-up-moving", "morph", "octree") if method == "reflection-morphing" else ()
+    steps = (*waves, *builds, *(f"{method}/{ask}" for ask in asks), "direct-view/shade", f"{method}/reflect")
     return {
         "schema_version": 2, "run": "toy", "commit": "0123456789abcdef",
         "scene": {"name": scene, "hash": "0", "triangles": 12, "vertices": 8, "objects": objects},

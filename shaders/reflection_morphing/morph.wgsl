@@ -24,6 +24,9 @@ struct Morph {
 
 const VALID: u32 = 2u;
 
+// Software drivers take time by the words that an invocation reads for itself. What all invocations share is read
+// once, but only outside of branches and loops: here there is none before the last `if`.
+
 struct Morphed {
     point: vec3<f32>,
     // Metres from there to the vertex along the trace.
@@ -31,8 +34,26 @@ struct Morphed {
     status: u32,
 }
 
-fn morphed(sum: vec4<f32>, weight: f32, status: u32) -> Morphed {
-    return Morphed(sum.xyz / weight, sum.w / weight, status);
+// What the eight locations see, a column each, and how; the latter as in look_up.wgsl's w.
+struct Eight {
+    near: mat4x4<f32>,
+    far: mat4x4<f32>,
+    how_near: vec4<f32>,
+    how_far: vec4<f32>,
+}
+
+fn eight_of(vertex: u32) -> Eight {
+    let n = morph.total;
+    let a = mat4x4(points[vertex], points[n + vertex], points[2u * n + vertex], points[3u * n + vertex]);
+    let b = mat4x4(points[4u * n + vertex], points[5u * n + vertex], points[6u * n + vertex], points[7u * n + vertex]);
+    return Eight(a, b, vec4(a[0].w, a[1].w, a[2].w, a[3].w), vec4(b[0].w, b[1].w, b[2].w, b[3].w));
+}
+
+// The mean by these weights, whose sum is `weight`.
+fn mean(eight: Eight, near: vec4<f32>, far: vec4<f32>, weight: f32, status: u32) -> Morphed {
+    let point = (eight.near * near + eight.far * far).xyz;
+    let way = dot(near, abs(eight.how_near)) + dot(far, abs(eight.how_far));
+    return Morphed(point / weight, way / weight - 1.0, status);
 }
 
 #ifdef WEIGHTS_VALID
@@ -40,42 +61,27 @@ fn morphed(sum: vec4<f32>, weight: f32, status: u32) -> Morphed {
 const MOST: f32 = 0.5;
 
 // From the locations that see the vertex.
-fn interpolated(vertex: u32) -> Morphed {
-    var within = vec4(0.0);
-    var beside = vec4(0.0);
-    var weights = vec2(0.0);
-    for (var slot = 0u; slot < 8u; slot += 1u) {
-        let seen = points[slot * morph.total + vertex];
-        let weight = morph.weights[slot / 4u][slot % 4u];
-        let part = weight * vec4(seen.xyz, abs(seen.w) - 1.0);
-        within += select(vec4(0.0), part, seen.w > 0.0);
-        beside += select(vec4(0.0), part, seen.w < 0.0);
-        weights += select(vec2(0.0), vec2(weight), vec2(seen.w > 0.0, seen.w < 0.0));
-    }
-    if weights.x >= MOST {
-        return morphed(within, weights.x, SHOWN);
-    }
-    if weights.x + weights.y >= MOST {
-        return morphed(within + beside, weights.x + weights.y, HIDDEN);
-    }
-    return Morphed(vec3(0.0), 0.0, LOST);
+fn interpolated(eight: Eight, near: vec4<f32>, far: vec4<f32>) -> Morphed {
+    let none = vec4(0.0);
+    let any_near = select(near, none, eight.how_near == none);
+    let any_far = select(far, none, eight.how_far == none);
+    let within_near = select(none, near, eight.how_near > none);
+    let within_far = select(none, far, eight.how_far > none);
+    let all = dot(any_near + any_far, vec4(1.0));
+    let within = dot(within_near + within_far, vec4(1.0));
+    let is_shown = within >= MOST;
+    let status = select(select(LOST, HIDDEN, all >= MOST), SHOWN, is_shown);
+    let by_near = select(any_near, within_near, is_shown);
+    let by_far = select(any_far, within_far, is_shown);
+    return mean(eight, by_near, by_far, max(select(all, within, is_shown), 1e-6), status);
 }
 #else
 // "Compute the reflected point by trilinearly interpolating these eight points", where all eight are.
-fn interpolated(vertex: u32) -> Morphed {
-    var sum = vec4(0.0);
-    var status = SHOWN;
-    for (var slot = 0u; slot < 8u; slot += 1u) {
-        let seen = points[slot * morph.total + vertex];
-        if seen.w == 0.0 {
-            return Morphed(vec3(0.0), 0.0, LOST);
-        }
-        if seen.w < 0.0 {
-            status = HIDDEN;
-        }
-        sum += morph.weights[slot / 4u][slot % 4u] * vec4(seen.xyz, abs(seen.w) - 1.0);
-    }
-    return morphed(sum, 1.0, status);
+fn interpolated(eight: Eight, near: vec4<f32>, far: vec4<f32>) -> Morphed {
+    let none = vec4(0.0);
+    let is_lost = any(eight.how_near == none) || any(eight.how_far == none);
+    let is_hidden = any(eight.how_near < none) || any(eight.how_far < none);
+    return mean(eight, near, far, 1.0, select(select(SHOWN, HIDDEN, is_hidden), LOST, is_lost));
 }
 #endif
 
@@ -91,28 +97,23 @@ fn is_shown(owner: u32) -> bool {
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let vertex = id.x;
-    if vertex >= morph.total {
-        return;
-    }
+    let vertex = min(id.x, morph.total - 1u);
     let owner = owners[vertex];
     let position = world_position(objects[owner], vertices[vertex].position);
-    // Triangles that touch the eye cover no pixel: none but whole ones are drawn.
-    var corner = Corner(position, 0u, camera.eye, packed_found(vec2(0.0), LOST));
-    if is_shown(owner) {
-        let seen = interpolated(vertex);
-        if seen.status != LOST {
-            // "Push this point along the ray from the desired view to itself", by "the distance between itself
-            // and the actual scene vertex" (figure 7); over more reflectors, by the way over all of them.
+    let seen = interpolated(eight_of(vertex), morph.weights[0], morph.weights[1]);
+    // "Push this point along the ray from the desired view to itself", by "the distance between itself and the
+    // actual scene vertex" (figure 7); over more reflectors, by the way over all of them.
 #ifdef TRACES_MIXED
-            let away = seen.way;
+    let away = seen.way;
 #else
-            let away = select(seen.way, distance(position, seen.point), morph.order == 1u);
+    let away = select(seen.way, distance(position, seen.point), morph.order == 1u);
 #endif
-            corner.image = seen.point + away * arriving(camera, seen.point);
-            corner.found = packed_found(vec2(0.0), seen.status);
-            count(VALID, select(0u, 1u, seen.status == SHOWN));
-        }
+    let image = seen.point + away * arriving(camera, seen.point);
+    let status = select(LOST, seen.status, is_shown(owner));
+    // Triangles that touch the eye cover no pixel: none but whole ones are drawn.
+    let drawn_at = select(image, camera.eye, status == LOST);
+    if id.x < morph.total {
+        corners[vertex] = Corner(position, 0u, drawn_at, packed_found(vec2(0.0), status));
+        count(VALID, select(0u, 1u, status == SHOWN));
     }
-    corners[vertex] = corner;
 }

@@ -68,18 +68,21 @@ fn leaf_of(point: vec3<f32>) -> u32 {
 }
 
 // Whether a ray is of those asked for: of the trace, or of any with the same first reflector.
-fn is_asked_for(segment: RaySegment) -> bool {
+fn is_asked_for(segment: RaySegment, trace: u32) -> bool {
 #ifdef TRACES_MIXED
-    return (segment.trace & 0xffu) == (octree.trace & 0xffu);
+    return (segment.trace & 0xffu) == (trace & 0xffu);
 #else
-    return segment.trace == octree.trace;
+    return segment.trace == trace;
 #endif
 }
 
+// What all invocations share, `trace` as here, is read once where no branch or loop is open, and by each lane where
+// one is: software drivers know no better.
+
 // The nearer of what was found and a ray; of two as near the first in the map.
-fn nearer(nearest: Nearest, ray: u32, point: vec3<f32>) -> Nearest {
+fn nearer(nearest: Nearest, ray: u32, point: vec3<f32>, trace: u32) -> Nearest {
     let segment = segments[ray];
-    if !is_asked_for(segment) {
+    if !is_asked_for(segment, trace) {
         return nearest;
     }
     let distance = distance_squared(segment, point);
@@ -94,9 +97,11 @@ fn nearer(nearest: Nearest, ray: u32, point: vec3<f32>) -> Nearest {
 #ifdef BRUTE_FORCE
 // Of all rays (section 1.2).
 fn nearest(point: vec3<f32>) -> Nearest {
+    let trace = octree.trace;
+    let end = octree.segments;
     var out = Nearest(0u, false, 0u, 0.0);
-    for (var ray = 0u; ray < octree.segments; ray += 1u) {
-        out = nearer(out, ray, point);
+    for (var ray = 0u; ray < end; ray += 1u) {
+        out = nearer(out, ray, point, trace);
     }
     return out;
 }
@@ -110,10 +115,11 @@ const LEVEL: u32 = 27u;
 const CELL: u32 = (1u << LEVEL) - 1u;
 
 // Of the rays in a leaf, those that are nearer than what was found.
-fn nearest_in(leaf: u32, found: Nearest, point: vec3<f32>) -> Nearest {
+fn nearest_in(leaf: u32, found: Nearest, point: vec3<f32>, trace: u32) -> Nearest {
     var out = found;
-    for (var place = starts[leaf]; place < starts[leaf + 1u]; place += 1u) {
-        out = nearer(out, lists[place], point);
+    let end = starts[leaf + 1u];
+    for (var place = starts[leaf]; place < end; place += 1u) {
+        out = nearer(out, lists[place], point, trace);
     }
     return out;
 }
@@ -136,11 +142,13 @@ fn halves(point: vec3<f32>, corner: vec3<u32>, half: u32) -> Halves {
 
 // Of the leaves it can run through: the point's own, then those nearer than what was found, near ones first.
 fn nearest(point: vec3<f32>) -> Nearest {
+    let trace = octree.trace;
     var out = Nearest(0u, false, 0u, 0.0);
 #ifndef TRACES_MIXED
     if octree.scan == 1u {
-        for (var ray = octree.first; ray < octree.end; ray += 1u) {
-            out = nearer(out, ray, point);
+        let end = octree.end;
+        for (var ray = octree.first; ray < end; ray += 1u) {
+            out = nearer(out, ray, point, trace);
         }
         return out;
     }
@@ -148,7 +156,7 @@ fn nearest(point: vec3<f32>) -> Nearest {
     var own = LEAF;
     if all(point >= octree.low) && all(point <= octree.high) {
         own = leaf_of(point);
-        out = nearest_in(own, out, point);
+        out = nearest_in(own, out, point, trace);
     }
     var waiting: array<vec2<u32>, WAITING>;
     waiting[0] = vec2(cells[0], 0u);
@@ -159,7 +167,7 @@ fn nearest(point: vec3<f32>) -> Nearest {
         if (visit.x & LEAF) != 0u {
             let leaf = visit.x & CELL;
             if leaf != own {
-                out = nearest_in(leaf, out, point);
+                out = nearest_in(leaf, out, point, trace);
             }
             continue;
         }
@@ -186,13 +194,15 @@ fn nearest(point: vec3<f32>) -> Nearest {
 #else
 // Of the rays in the point's own leaf.
 fn nearest(point: vec3<f32>) -> Nearest {
+    let trace = octree.trace;
     var out = Nearest(0u, false, 0u, 0.0);
     if any(point < octree.low) || any(point > octree.high) {
         return out;
     }
     let leaf = leaf_of(point);
-    for (var place = starts[leaf]; place < starts[leaf + 1u]; place += 1u) {
-        out = nearer(out, lists[place], point);
+    let end = starts[leaf + 1u];
+    for (var place = starts[leaf]; place < end; place += 1u) {
+        out = nearer(out, lists[place], point, trace);
     }
     return out;
 }
