@@ -414,7 +414,7 @@ fn the_fields_are_named_as_the_results_promise() {
         value.as_object().unwrap().keys().cloned().collect()
     };
     let expected = "bad_share covered missing spurious wrong_object wrong_depth unreachable \
-        footprint_mismatch displacement_px angle_deg relmse relmse_shading psnr flip by_order by_reflector";
+        footprint_mismatch displacement_px angle_deg relmse relmse_shading psnr flip by_order by_reflector by_second";
     assert_eq!(keys(&json), expected.split_whitespace().collect::<Vec<_>>());
     assert_eq!(keys(&json["bad_share"]), ["0.5", "1", "2", "4"]);
     assert_eq!(keys(&json["angle_deg"]), ["median", "p95", "max"]);

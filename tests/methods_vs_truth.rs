@@ -14,7 +14,7 @@ const SIZE: [u32; 2] = [128, 96];
 
 /// A case, a scene, and the band its `bad_share` at 1 px lies in. Environment maps of a near scene
 /// are wrong nearly everywhere; what is right shows the environment or the far floor.
-const BANDS: [(&str, &str, [f64; 2]); 54] = [
+const BANDS: [(&str, &str, [f64; 2]); 59] = [
     ("environment-map", "sky", [0.0, 0.0]),
     ("environment-map", "columns", [0.3, 0.75]),
     ("environment-map", "patow-room", [0.8, 1.0]),
@@ -67,8 +67,13 @@ const BANDS: [(&str, &str, [f64; 2]); 54] = [
     ("billboard-impostors", "columns", [0.08, 0.2]),
     ("billboard-impostors", "two-spheres", [0.08, 0.25]),
     ("billboard-impostors:size=256,map=256", "table", [0.08, 0.22]),
-    ("billboard-impostors@revised", "columns", [0.06, 0.17]),
-    ("billboard-impostors@revised", "two-spheres", [0.05, 0.18]),
+    ("billboard-impostors:size=256,map=256", "half-sunk", [0.08, 0.22]),
+    ("billboard-impostors@revised", "columns", [0.0, 0.01]),
+    ("billboard-impostors@revised", "two-spheres", [0.0, 0.01]),
+    ("billboard-impostors@revised:size=256,map=256", "table", [0.005, 0.06]),
+    ("billboard-impostors@revised:size=256,map=256", "half-sunk", [0.005, 0.06]),
+    ("depth-impostors:size=256", "half-sunk", [0.06, 0.2]),
+    ("depth-impostors@revised:size=256,step_deg=10", "half-sunk", [0.02, 0.08]),
 ];
 
 #[test]

@@ -27,6 +27,16 @@ fn every_shader_compiles() {
             "LAST_DIFFUSE",
             "RECORD_FULL",
         ]);
+        let revised_boards = on(&[
+            "RELIEF",
+            "ORIGIN_STORED",
+            "FILTER_MIP",
+            "RECORD_FULL",
+            "BACKDROP",
+            "MORPH",
+            "FAR_DISTANCE",
+            "BORDER_SHARP",
+        ]);
         for defines in [
             &[][..],
             &[("RECORD_FULL", 1)],
@@ -47,6 +57,8 @@ fn every_shader_compiles() {
             &further,
             &billboards[..5],
             &billboards,
+            &revised_boards[..3],
+            &revised_boards,
             &[("FADES", 1), ("BY_ANGLE", 1)],
         ] {
             if let Err(error) = shaders.check(file, defines) {

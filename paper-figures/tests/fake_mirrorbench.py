@@ -256,6 +256,8 @@ def row(scene: str, case: str, size: list[int], frame: int, timed: bool, baselin
         "by_reflector": [{"reflector": name, "share": share, "missing": 0.02,
                           "bad_share": {"0.5": 0.3, "1": 0.2, "2": 0.1, "4": 0.1}}
                          for name, share in (("teapot.body", 0.9), ("teapot.lid", 0.1))],
+        "by_second": [{"second": second, "share": 0.05, "missing": 0.02,
+                       "bad_share": {"0.5": 0.3, "1": 0.2, "2": 0.1, "4": 0.1}} for second in ("own", "other")],
     }  # fmt: skip
     device = {"name": "toy device", "driver": "toy 1.0", "api": "1.3.0", "is_software": True}
     time = {"median": scale, "min": 0.9 * scale, "p95": 1.3 * scale, "n": 20,

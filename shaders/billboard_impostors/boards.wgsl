@@ -2,8 +2,8 @@
 #define_import_path billboard_impostors::boards
 
 #import bindings::portrait::{
-    Portrait, portrait_axes, portrait_own_direction, portrait_own_position, portrait_place,
-    portrait_rotated, portrait_to_world,
+    Portrait, portrait_axes, portrait_own_direction, portrait_own_position, portrait_rotated,
+    portrait_to_world,
 }
 
 struct Params {
@@ -16,7 +16,8 @@ struct Params {
     coarsest: f32,
     // Of ray morphing, as a share of the billboard's shorter side; 0 without.
     margin: f32,
-    pad: u32,
+    // The most a search along a ray takes.
+    steps: u32,
 }
 // Storage, not uniform: loops depend on it, over which lavapipe (Mesa 22.3) crashes.
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -32,9 +33,11 @@ struct Sight {
 }
 // One an object.
 @group(0) @binding(2) var<storage, read> sights: array<Sight>;
-// A layer of the portraits; the highest bit is set where the billboard is a flat thing itself.
+// A layer of the portraits, and two bits: the billboard is a flat thing itself; it is the reflector's own.
 @group(0) @binding(3) var<storage, read> boards: array<u32>;
 const FLAT: u32 = 0x80000000u;
+const OWN: u32 = 0x40000000u;
+const LAYER: u32 = 0x3fffffffu;
 
 @group(0) @binding(4) var portrait_radiance: texture_2d_array<f32>;
 @group(0) @binding(5) var portrait_albedo: texture_2d_array<f32>;
@@ -63,15 +66,24 @@ struct Meeting {
     outside: f32,
     // A flat thing itself.
     flat: bool,
+    // Of the surface met, before the picture's plane; metres.
+    height: f32,
 }
 
-// The plane's point that a ray meets, in the picture's axes, and the way to it: negative behind.
-fn on_plane(portrait: Portrait, ray: Ray) -> vec3<f32> {
+fn no_meeting() -> Meeting {
+    return Meeting(NOWHERE, 0u, vec2(0.0), 0.0, false, 0.0);
+}
+
+// Where the point that a ray meets at some height before a picture's plane is on that plane, in the
+// picture's axes, and the way to it: negative behind.
+fn on_plane(portrait: Portrait, ray: Ray, height: f32) -> vec3<f32> {
     let o = portrait_axes(portrait, portrait_own_position(portrait, ray.origin));
     let own = portrait_own_direction(portrait, ray.direction);
     let d = vec3(dot(own, portrait.right), dot(own, portrait.up), dot(own, portrait.towards));
-    let along = -o.z / select(d.z, 1.0e-20, abs(d.z) < 1.0e-20);
-    return vec3(o.xy + along * d.xy, along);
+    let along = (height - o.z) / select(d.z, 1.0e-20, abs(d.z) < 1.0e-20);
+    let eye = portrait.eye_distance;
+    let spread = select(eye / (eye - height), 1.0, eye == 0.0);
+    return vec3(spread * (o.xy + along * d.xy), along);
 }
 
 // How far a point of the plane is beyond the picture's border, in margins of ray morphing.
@@ -82,51 +94,20 @@ fn outside_of(portrait: Portrait, q: vec2<f32>) -> f32 {
 }
 
 // Where the environment map is looked up for a ray that passes beside a billboard: at the border in the
-// direction of the plane's point as seen from the map's centre, a margin further out in the ray's own
+// direction of the plane's point as seen from the map's centre, a margin further out in that without a border
 // (slides 24 to 28, "ray morphing").
-fn morphed(ray: Ray, along: f32, outside: f32) -> vec3<f32> {
+fn morphed(ray: Ray, along: f32, outside: f32, without: vec3<f32>) -> vec3<f32> {
     let seen = normalize(ray.origin + along * ray.direction - params.centre);
-    return normalize(mix(seen, ray.direction, smoothstep(0.0, 1.0, outside)));
+    return normalize(mix(seen, without, smoothstep(0.0, 1.0, outside)));
 }
 
 fn texel_of(place: vec2<f32>) -> vec2<u32> {
     return vec2<u32>(clamp(place * params.size, vec2(0.0), vec2(params.size - 1.0)));
 }
 
-// The nearest billboard that a ray meets, of those seen by the reflector it leaves (slide 15:
-// "intersect with (D + R - 1) billboards").
-fn nearest_board(ray: Ray, reflector: u32, diffuse_only: bool) -> Meeting {
-    let sight = sights[reflector];
-    let end = sight.first + select(sight.all, sight.diffuse, diffuse_only);
-    var nearest = Meeting(NOWHERE, 0u, vec2(0.0), 0.0, false);
-    for (var i = sight.first; i < end; i += 1u) {
-        let layer = boards[i] & ~FLAT;
-        let portrait = portraits[layer];
-        let q = on_plane(portrait, ray);
-        if !(q.z > 0.0 && q.z < nearest.distance) {
-            continue;
-        }
-        let flat = boards[i] >= FLAT;
-        let place = portrait_place(portrait, q.xy);
-        let outside = outside_of(portrait, q.xy);
-        if outside > 0.0 {
-#ifdef MORPH
-            if flat && i < sight.first + sight.diffuse && outside < 1.0 {
-                nearest = Meeting(q.z, layer, place, outside, flat);
-            }
-#endif
-            continue;
-        }
-        if textureLoad(portrait_albedo, texel_of(place), layer, 0).a >= 0.5 {
-            nearest = Meeting(q.z, layer, place, 0.0, flat);
-        }
-    }
-    return nearest;
-}
-
-fn boards_tested(reflector: u32, diffuse_only: bool) -> u32 {
-    let sight = sights[reflector];
-    return select(sight.all, sight.diffuse, diffuse_only);
+// Of a picture's texels, the longer side, metres.
+fn texel_width(layer: u32) -> f32 {
+    return 2.0 * max(portraits[layer].half_width, portraits[layer].half_height) / params.size;
 }
 
 // Light from a place of a picture at a mip level. Levels mix what is covered with what is not.
@@ -146,8 +127,8 @@ struct BoardTexel {
 
 // That of the nearest texel, never a blend. Of a flat thing every place has its own point, as it is its own picture.
 fn board_texel(met: Meeting) -> BoardTexel {
-    let texel = texel_of(met.place);
     let portrait = portraits[met.layer];
+    let texel = texel_met(met);
     let stored = textureLoad(portrait_point, texel, met.layer, 0);
     var point = stored.xyz;
     if met.flat {
@@ -160,15 +141,42 @@ fn board_texel(met: Meeting) -> BoardTexel {
     return BoardTexel(portrait_to_world(portrait, point), ids.x, ids.y, front);
 }
 
+// The texel that shows what was met at a place: of the four about it the covered one nearest in height, where rays
+// meet stored surfaces.
+fn texel_met(met: Meeting) -> vec2<u32> {
+    var nearest = texel_of(met.place);
+#ifdef RELIEF
+    if met.flat {
+        return nearest;
+    }
+    let base = floor(met.place * params.size - 0.5);
+    var least = NOWHERE;
+    for (var i = 0u; i < 4u; i += 1u) {
+        let at = base + vec2(f32(i & 1u), f32(i >> 1u));
+        let texel = vec2<u32>(clamp(at, vec2(0.0), vec2(params.size - 1.0)));
+        let off = abs(textureLoad(portrait_point, texel, met.layer, 0).w - met.height);
+        if textureLoad(portrait_albedo, texel, met.layer, 0).a >= 0.5 && off < least {
+            least = off;
+            nearest = texel;
+        }
+    }
+#endif
+    return nearest;
+}
+
 struct BoardSurface {
     // Unit; 0 where no texel about the place is covered.
     normal: vec3<f32>,
     point: vec3<f32>,
 }
 
-// Normal and point between texels, what is not covered left out: what a mirrored ray leaves by. World.
-fn board_surface(layer: u32, place: vec2<f32>) -> BoardSurface {
-    let at = place * params.size - 0.5;
+// Texels of one surface differ in height by no more than this many texels' width.
+const STEEPEST: f32 = 4.0;
+
+// Normal and point between texels, what is not covered left out, and what belongs to another surface than that
+// met: what a mirrored ray leaves by. World.
+fn board_surface(met: Meeting) -> BoardSurface {
+    let at = met.place * params.size - 0.5;
     let base = floor(at);
     let f = at - base;
     var normal = vec3(0.0);
@@ -177,12 +185,18 @@ fn board_surface(layer: u32, place: vec2<f32>) -> BoardSurface {
         let corner = vec2(f32(i & 1u), f32(i >> 1u));
         let texel = vec2<i32>(clamp(base + corner, vec2(0.0), vec2(params.size - 1.0)));
         let part = mix(1.0 - f, f, corner);
-        let covered = textureLoad(portrait_albedo, texel, layer, 0).a;
+        var covered = textureLoad(portrait_albedo, texel, met.layer, 0).a;
+        let stored = textureLoad(portrait_point, texel, met.layer, 0);
+#ifdef RELIEF
+        if abs(stored.w - met.height) > STEEPEST * texel_width(met.layer) {
+            covered *= 1.0e-6;
+        }
+#endif
         let weight = part.x * part.y * covered;
-        normal += weight * textureLoad(portrait_normal, texel, layer, 0).xyz;
-        point += weight * vec4(textureLoad(portrait_point, texel, layer, 0).xyz, 1.0);
+        normal += weight * textureLoad(portrait_normal, texel, met.layer, 0).xyz;
+        point += weight * vec4(stored.xyz, 1.0);
     }
-    let portrait = portraits[layer];
+    let portrait = portraits[met.layer];
     let own = point.xyz / max(point.w, 1.0e-20);
     let squared = dot(normal, normal);
     let unit = normal * select(0.0, inverseSqrt(max(squared, 1.0e-20)), squared > 1.0e-20);

@@ -1,65 +1,19 @@
 // The pixel algorithm of Popescu et al. 2006, slide 15: a mirrored ray meets billboards, diffuse ones that
 // end it and reflective ones that send it on by their normals, until none is in its way.
 #import billboard_impostors::boards::{
-    Meeting, NOWHERE, Ray, board_light, board_surface, board_texel, boards_tested, leaving_point,
-    linear_filter, morphed, nearest_board, params,
+    NOWHERE, Ray, board_light, board_surface, board_texel, leaving_point, params,
 }
+#import billboard_impostors::far::{far_chain, far_direction, far_light, far_reach}
+#import billboard_impostors::nearest::{boards_tested, nearest_board}
 #ifdef FILTER_MIP
 #import billboard_impostors::footprint::{far_level, level_of, mirrored_neighbours, neighbours_of}
 #endif
 #import bindings::departure::{LOBE_REFLECTED, depart, is_heaviest}
 #import bindings::record::{count, count_most}
-#import bindings::scene::{environment, materials, objects}
+#import bindings::scene::{materials, objects}
 #import bindings::view::MirrorPoint
 #import common::camera::seen_normal
-#import common::cube::cube_texel
-#import common::record::{
-    Chain, NO_OBJECT, STATUS_ENVIRONMENT, STATUS_FOUND, extended_trace, trace_of,
-}
-
-#ifdef BACKDROP
-@group(0) @binding(50) var backdrop_radiance: texture_cube<f32>;
-#ifdef RECORD_FULL
-@group(0) @binding(51) var backdrop_point: texture_2d_array<f32>;
-@group(0) @binding(52) var backdrop_ids: texture_2d_array<u32>;
-#endif
-#endif
-
-// EM(d): what is behind all billboards, in a direction as the environment map has it.
-fn far_light(d: vec3<f32>, level: f32) -> vec3<f32> {
-#ifdef BACKDROP
-    return textureSampleLevel(backdrop_radiance, linear_filter, d, level).rgb;
-#else
-    return environment(d);
-#endif
-}
-
-// The evidence for it, of a ray that left `origin` after `path` metres.
-fn far_chain(start: Chain, d: vec3<f32>, origin: vec3<f32>, path: f32) -> Chain {
-    var chain = start;
-    chain.point = vec4(d, 0.0);
-    // Infinitely far.
-    chain.last = vec4(origin, bitcast<f32>(0x7f800000u));
-    chain.object = NO_OBJECT;
-    chain.status = STATUS_ENVIRONMENT;
-#ifdef BACKDROP
-#ifdef RECORD_FULL
-    let texel = cube_texel(d);
-    let size = textureDimensions(backdrop_point);
-    let place = min(vec2<u32>(texel.uv * vec2<f32>(size)), size - 1u);
-    let point = textureLoad(backdrop_point, place, texel.face, 0);
-    chain.point = point;
-    if point.w == 1.0 {
-        let ids = textureLoad(backdrop_ids, place, texel.face, 0);
-        chain.last.w = path + distance(origin, point.xyz);
-        chain.object = ids.x;
-        chain.triangle = ids.y;
-        chain.status = STATUS_FOUND;
-    }
-#endif
-#endif
-    return chain;
-}
+#import common::record::{Chain, STATUS_FOUND, extended_trace, trace_of}
 
 fn answer(at: MirrorPoint) -> Chain {
     var chain: Chain;
@@ -86,14 +40,12 @@ fn answer(at: MirrorPoint) -> Chain {
         tested += boards_tested(reflector, diffuse_only);
         let met = nearest_board(ray, reflector, diffuse_only);
         if met.distance == NOWHERE || met.outside > 0.0 {
-            var d = ray.direction;
-            if met.outside > 0.0 {
-                d = morphed(ray, met.distance, met.outside);
-            }
+            let reach = far_reach(ray);
+            let d = far_direction(ray, met, reach);
             var level = 0.0;
 #ifdef FILTER_MIP
 #ifdef BACKDROP
-            level = far_level(d, met, beside, f32(textureDimensions(backdrop_radiance).x));
+            level = far_level(d, met, beside, reach);
 #endif
 #endif
             chain.radiance += throughput * far_light(d, level);
@@ -110,7 +62,7 @@ fn answer(at: MirrorPoint) -> Chain {
         let object = objects[texel.object];
         let material = materials[object.material];
         chain.radiance += throughput * board_light(met, level);
-        let surface = board_surface(met.layer, met.place);
+        let surface = board_surface(met);
         let normal = seen_normal(surface.normal, ray.direction);
         let way = depart(material, LOBE_REFLECTED, ray.direction, normal, texel.front);
         // What glass lets through no picture shows.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::lab::Lab;
 use crate::error::Result;
 use crate::measure::{
-    Accuracy, BadShare, Flip, Quantiles, accuracy, mean_by_order, mean_by_reflector,
+    Accuracy, BadShare, Flip, Quantiles, accuracy, mean_by_order, mean_by_reflector, mean_by_second,
 };
 use crate::methods::Case;
 use crate::scene::Scene;
@@ -71,6 +71,7 @@ impl Evidence {
         let first = all.first()?;
         let orders: Vec<_> = all.iter().map(|a| a.by_order.as_slice()).collect();
         let reflectors: Vec<_> = all.iter().map(|a| a.by_reflector.as_slice()).collect();
+        let seconds: Vec<_> = all.iter().map(|a| a.by_second.as_slice()).collect();
         let mean = |field: fn(&Accuracy) -> f64| mean(all.iter().map(|a| field(a))).unwrap_or(0.0);
         Some(Accuracy {
             bad_share: BadShare {
@@ -99,6 +100,7 @@ impl Evidence {
             },
             by_order: mean_by_order(&orders),
             by_reflector: mean_by_reflector(&reflectors),
+            by_second: mean_by_second(&seconds),
         })
     }
 }
@@ -140,6 +142,7 @@ pub(super) mod tests {
             flip: Flip { mean: x, p95: x, ppd: 67.0, exposure: 1.0 },
             by_order: Vec::new(),
             by_reflector: Vec::new(),
+            by_second: Vec::new(),
         }
     }
 

@@ -8,7 +8,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::colour::{self, EXPOSURE};
-use super::groups::{OrderAccuracy, ReflectorAccuracy, by_order, by_reflector};
+use super::groups::{
+    OrderAccuracy, ReflectorAccuracy, SecondAccuracy, by_order, by_reflector, by_second,
+};
 use super::judge::{Judged, judge_all};
 use crate::error::{Error, Result};
 use crate::scene::{FrameRecord, NO_OBJECT};
@@ -55,6 +57,9 @@ pub struct Accuracy {
     /// By the reflector seen, in the order of their names.
     #[serde(default)]
     pub by_reflector: Vec<ReflectorAccuracy>,
+    /// Of order 2, by whether the second mirror is the first one's own.
+    #[serde(default)]
+    pub by_second: Vec<SecondAccuracy>,
 }
 
 /// Share of bad pixels by the displacement still tolerated, in pixels.
@@ -194,6 +199,7 @@ pub fn accuracy(
         flip: flip.0,
         by_order: by_order(truth, &compared, &judged),
         by_reflector: by_reflector(tracer.scene(), truth, &compared, &judged),
+        by_second: by_second(tracer.scene(), truth, &compared, &judged),
     };
     Ok((accuracy, maps))
 }

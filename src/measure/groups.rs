@@ -1,4 +1,4 @@
-//! Errors of some of the pixels: by the number of mirrors the truth met, by the mirror looked at.
+//! Errors of some of the pixels: by the number of mirrors the truth met, by the mirror looked at, by the one met second.
 
 use std::collections::BTreeMap;
 
@@ -38,6 +38,25 @@ pub struct ReflectorAccuracy {
     pub group: GroupAccuracy,
 }
 
+/// Which mirror a chain meets second.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum Second {
+    /// The first again, or another part of its group.
+    Own,
+    Other,
+}
+
+/// Pixels at which the truth meets two mirrors.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SecondAccuracy {
+    pub second: Second,
+    #[serde(flatten)]
+    pub group: GroupAccuracy,
+}
+
 /// Of the pixels compared, by rising order.
 pub(super) fn by_order(
     truth: &FrameRecord,
@@ -60,6 +79,29 @@ pub(super) fn by_reflector(
     let name = |pixel: usize| scene.objects[truth.reflector[pixel] as usize].name.clone();
     let groups = grouped(compared, judged, name).into_iter();
     groups.map(|(reflector, group)| ReflectorAccuracy { reflector, group }).collect()
+}
+
+/// Of the pixels compared, those of order 2 by their second mirror.
+pub(super) fn by_second(
+    scene: &Scene,
+    truth: &FrameRecord,
+    compared: &[usize],
+    judged: &[Judged],
+) -> Vec<SecondAccuracy> {
+    let ranks = scene.reflectors();
+    // Of more than 254 reflectors the trace cannot tell all apart.
+    let group = |rank: u32| {
+        let object = ranks.get((rank as usize).wrapping_sub(1))?;
+        Some(&scene.objects[*object as usize].group)
+    };
+    let second = |pixel: usize| {
+        let ids = truth.record.ids[pixel];
+        let [first, second] = [ids.trace & 0xff, ids.trace >> 8 & 0xff];
+        let own = || if group(first) == group(second) { Second::Own } else { Second::Other };
+        (ids.order() == 2).then(own)
+    };
+    let groups = grouped(compared, judged, second).into_iter();
+    groups.filter_map(|(second, group)| Some(SecondAccuracy { second: second?, group })).collect()
 }
 
 fn grouped<K: Ord>(
@@ -102,6 +144,12 @@ pub fn mean_by_order(frames: &[&[OrderAccuracy]]) -> Vec<OrderAccuracy> {
 pub fn mean_by_reflector(frames: &[&[ReflectorAccuracy]]) -> Vec<ReflectorAccuracy> {
     let groups = mean_of(frames, |one| (one.reflector.clone(), one.group)).into_iter();
     groups.map(|(reflector, group)| ReflectorAccuracy { reflector, group }).collect()
+}
+
+/// The same by the second mirror.
+pub fn mean_by_second(frames: &[&[SecondAccuracy]]) -> Vec<SecondAccuracy> {
+    let groups = mean_of(frames, |one| (one.second, one.group)).into_iter();
+    groups.map(|(second, group)| SecondAccuracy { second, group }).collect()
 }
 
 fn mean_of<T, K: Ord>(

@@ -20,6 +20,7 @@ mod usual;
 
 pub use accuracy::{Accuracy, BadShare, Class, Flip, Maps, Quantiles, accuracy};
 pub use groups::{
-    GroupAccuracy, OrderAccuracy, ReflectorAccuracy, mean_by_order, mean_by_reflector,
+    GroupAccuracy, OrderAccuracy, ReflectorAccuracy, Second, SecondAccuracy, mean_by_order,
+    mean_by_reflector, mean_by_second,
 };
 pub use stability::{Jitter, PathFrame, PathMeasure, Stability};

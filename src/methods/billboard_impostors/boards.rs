@@ -5,6 +5,7 @@ use glam::Vec3;
 
 use super::super::Setup;
 use super::INFO;
+use super::own::{OwnView, own_views};
 use crate::error::Result;
 use crate::gpu::{Frame, Pass, Slice};
 use crate::scene::{Impostor, ObjectId, Scene};
@@ -17,9 +18,10 @@ const FLAT: f32 = 0.05;
 /// How many texels all pictures together have at most: 512 MiB at 60 bytes each.
 const TEXELS: u32 = (512 << 20) / 60;
 /// Sides of pictures where no size is forced.
-const SIZES: [u32; 6] = [512, 256, 128, 64, 32, 16];
-/// The highest bit of a billboard's word, see `shaders/billboard_impostors/boards.wgsl`.
+const SIZES: [u32; 10] = [512, 384, 256, 192, 128, 96, 64, 48, 32, 16];
+/// The highest bits of a billboard's word, see `shaders/billboard_impostors/boards.wgsl`.
 const FLAT_BIT: u32 = 1 << 31;
+const OWN_BIT: u32 = 1 << 30;
 
 /// WGSL `Sight` of `shaders/billboard_impostors/boards.wgsl`.
 #[derive(Clone, Copy, Default, Pod, Zeroable)]
@@ -65,11 +67,16 @@ enum Faced {
     All,
     /// Rank among the things.
     One(usize),
+    /// The thing itself, for what it shows of itself: the picture is of a part, from infinitely far in
+    /// this direction of own space.
+    Own(Vec3),
 }
 
 /// One layer of the portraits.
 struct Layer {
     thing: usize,
+    /// What is pictured: all of the thing, or a part.
+    objects: Vec<ObjectId>,
     faced: Faced,
     /// From where it was last taken, own space.
     eye: Option<Vec3>,
@@ -99,10 +106,13 @@ impl Boards {
     pub fn new(setup: &Setup) -> Result<Boards> {
         let (device, scene, values) = (setup.device, &setup.scene.scene, setup.values);
         let things = things(scene);
-        let layers = layers(&things, values.is("views", "each"));
+        let mut layers = layers(&things, values.is("views", "each"));
+        if values.is("relief", "on") {
+            layers.extend(own_layers(scene, &things, values.u32("own") as usize));
+        }
         let fits = |size: &u32| size * size * layers.len() as u32 <= TEXELS;
         let size = values.forced_u32("size");
-        let size = size.or(SIZES.into_iter().find(fits)).unwrap_or(SIZES[5]);
+        let size = size.or(SIZES.into_iter().find(fits)).unwrap_or(SIZES[SIZES.len() - 1]);
         let levels = if values.is("filter", "mip") { size.ilog2() + 1 } else { 1 };
         let portraits = Portraits::new(device, "billboards", size, layers.len() as u32, levels)?;
         let sight = if values.is("sight", "central") { Sight::Central } else { Sight::Parallel };
@@ -124,21 +134,29 @@ impl Boards {
     /// light them all.
     pub fn prepare(&mut self, frame: &mut Frame, scene: &GpuScene) -> Result<()> {
         for index in 0..self.layers.len() {
-            let thing = &self.things[self.layers[index].thing];
-            let eye = self.eye(scene, &self.layers[index]);
+            let layer = &self.layers[index];
+            let thing = &self.things[layer.thing];
+            let eye = self.eye(scene, layer);
             let deformed = thing.objects.iter().any(|&object| scene.deformed(object).is_some());
-            if self.layers[index].eye == Some(eye) && !deformed {
+            if layer.eye == Some(eye) && !deformed {
                 continue;
             }
-            let points = own_points(&scene.scene, scene.moment(), &thing.objects);
-            let view = match thing.impostor {
-                Impostor::Facing(_) => PortraitView::facing(&points, eye, Sight::Parallel),
+            let points = own_points(&scene.scene, scene.moment(), &layer.objects);
+            let view = match (layer.faced, thing.impostor) {
+                (Faced::Own(_), _) | (_, Impostor::Facing(_)) => {
+                    PortraitView::facing(&points, eye, Sight::Parallel)
+                }
                 _ if thing.flat => PortraitView::flat(&points, eye),
                 _ => PortraitView::facing(&points, eye, self.sight),
             };
-            let target = (&mut self.portraits, index as u32);
-            self.stage.take(frame, scene, INFO.id, target, &thing.objects, view)?;
             self.layers[index].eye = Some(eye);
+            // What is flat looks the same from everywhere on one side.
+            if self.portraits.view(index as u32) == Some(&view) && !deformed {
+                continue;
+            }
+            let layer = &self.layers[index];
+            let target = (&mut self.portraits, index as u32);
+            self.stage.take(frame, scene, INFO.id, target, &layer.objects, view)?;
         }
         self.stage.light(frame, scene, INFO.id, &self.portraits)
     }
@@ -153,6 +171,7 @@ impl Boards {
             return centre + 1e3 * towards;
         }
         let seeing: Vec<_> = match layer.faced {
+            Faced::Own(towards) => return centre + 1e3 * towards,
             Faced::One(viewer) => vec![viewer],
             Faced::All => viewers_of(&self.things, layer.thing).collect(),
         };
@@ -191,8 +210,12 @@ impl Boards {
                 sights[object as usize] = sight;
             }
             let word = |index: u32| {
-                let flat = self.things[self.layers[index as usize].thing].flat;
-                if flat { index | FLAT_BIT } else { index }
+                let layer = &self.layers[index as usize];
+                match layer.faced {
+                    Faced::Own(_) => index | OWN_BIT,
+                    _ if self.things[layer.thing].flat => index | FLAT_BIT,
+                    _ => index,
+                }
             };
             boards.extend(diffuse.into_iter().chain(mirrors).map(word));
         }
@@ -204,7 +227,11 @@ impl Boards {
     }
 
     fn is_seen_by(&self, layer: &Layer, viewer: usize) -> bool {
-        layer.thing != viewer && (layer.faced == Faced::All || layer.faced == Faced::One(viewer))
+        match layer.faced {
+            Faced::All => layer.thing != viewer,
+            Faced::One(one) => one == viewer,
+            Faced::Own(_) => layer.thing == viewer,
+        }
     }
 
     /// Bind all of it.
@@ -245,7 +272,9 @@ fn viewers_of(things: &[Thing], of: usize) -> impl Iterator<Item = usize> {
 fn layers(things: &[Thing], each: bool) -> Vec<Layer> {
     let mut layers = Vec::new();
     for (index, thing) in things.iter().enumerate() {
-        let mut add = |faced| layers.push(Layer { thing: index, faced, eye: None });
+        let mut add = |faced| {
+            layers.push(Layer { thing: index, objects: thing.objects.clone(), faced, eye: None });
+        };
         if each && !thing.flat && thing.impostor == Impostor::Fitted {
             viewers_of(things, index).for_each(|viewer| add(Faced::One(viewer)));
         } else if viewers_of(things, index).next().is_some() {
@@ -253,6 +282,21 @@ fn layers(things: &[Thing], each: bool) -> Vec<Layer> {
         }
     }
     layers
+}
+
+/// The pictures mirrors need of themselves, at most so many a thing.
+fn own_layers(scene: &Scene, things: &[Thing], most: usize) -> Vec<Layer> {
+    let of = |(index, thing): (usize, &Thing)| {
+        let views = own_views(scene, &thing.objects, most).into_iter();
+        let layer = move |view: OwnView| Layer {
+            thing: index,
+            objects: vec![view.part],
+            faced: Faced::Own(view.towards),
+            eye: None,
+        };
+        views.map(layer).collect::<Vec<_>>()
+    };
+    things.iter().enumerate().filter(|(_, thing)| thing.mirrors).flat_map(of).collect()
 }
 
 /// The middle of a thing's box in its own space, at rest.

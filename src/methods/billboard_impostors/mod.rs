@@ -7,9 +7,12 @@
 //! environment map; beside a flat thing's border the map's direction is morphed (slides 24 to 28), which
 //! `morph=0` turns off (slide 24). Distances along the ray decide what is in front.
 //!
-//! `revised` takes a picture of each object for each mirror, as that mirror's centre sees it, follows as many
-//! orders as the scene asks for, and lets a mirrored ray leave from the surface point stored with the picture
-//! instead of from the quad.
+//! `revised` takes a picture of each object for each mirror, as that mirror's centre sees it, and follows as many
+//! orders as the scene asks for. Rays do not meet the quads but the surfaces whose depth is stored with the pictures
+//! (`relief`), and leave from there: "flat reflection" and "lack of motion parallax" (slide 34) end where a picture shows
+//! all that rays can see. A mirror shows itself (`own`; "self-reflections", slide 50) in pictures of its parts
+//! that are chosen by what its rays meet. The environment map is looked up where a ray meets what is in it
+//! (`far`), and ray morphing hides a border with mip maps too (`border`).
 //!
 //! Choices the slides leave open: pictures are placed by the object's bounds, through their middle,
 //! facing the middle of all mirrors that see them; what is flat is its own billboard; the margin of ray
@@ -18,6 +21,7 @@
 //! would be seen twice. After the last order a mirror shows its own colour.
 
 mod boards;
+mod own;
 
 use std::sync::Arc;
 
@@ -80,11 +84,50 @@ pub const INFO: MethodInfo = MethodInfo {
                   stored with the picture",
         },
         Param {
+            name: "relief",
+            kind: Kind::Choice(&["off", "on"]),
+            defaults: &["off", "on"],
+            needs: None,
+            doc: "rays meet quads, or the surface stored with the picture, by a search along it (parallax \
+                  within an object)",
+        },
+        Param {
+            name: "steps",
+            kind: Kind::Integer { min: 1, max: 1024 },
+            defaults: &["64"],
+            needs: Some(("relief", &["on"])),
+            doc: "the most steps of that search; one a texel is enough",
+        },
+        Param {
+            name: "own",
+            kind: Kind::Integer { min: 0, max: 64 },
+            defaults: &["0", "16"],
+            needs: Some(("relief", &["on"])),
+            doc: "the most pictures a mirror has of its own parts, in which it shows itself; 0: it skips its \
+                  own billboard",
+        },
+        Param {
             name: "morph",
             kind: Kind::Real { min: 0.0, max: 1.0 },
             defaults: &["0.25"],
             needs: None,
             doc: "margin of ray morphing round flat things, as a share of their shorter side; 0: none",
+        },
+        Param {
+            name: "far",
+            kind: Kind::Choice(&["direction", "distance"]),
+            defaults: &["direction", "distance"],
+            needs: None,
+            doc: "the environment map is looked up by a ray's direction, or where the ray meets the surfaces \
+                  in it",
+        },
+        Param {
+            name: "border",
+            kind: Kind::Choice(&["blurred", "sharp"]),
+            defaults: &["blurred", "sharp"],
+            needs: Some(("filter", &["mip"])),
+            doc: "mip level of the environment map beside a flat thing's border: the footprint's, or one that \
+                  rises from 0 there, as the billboard's own falls to it",
         },
         Param {
             name: "filter",
@@ -116,8 +159,8 @@ pub const INFO: MethodInfo = MethodInfo {
         },
         STAGE,
     ],
-    limits: "objects are flat: no parallax in them, and those near a mirror are cut by it; no \
-             self-reflection; no glass",
+    limits: "what no picture of an object shows is not there; without relief, objects are flat, those near a \
+             mirror are cut by it, and none mirrors itself; no glass",
     passes: &[
         "billboard-impostors/portrait",
         "billboard-impostors/portrait-light",
@@ -141,7 +184,7 @@ struct Params {
     size: f32,
     coarsest: f32,
     margin: f32,
-    pad: u32,
+    steps: u32,
 }
 
 /// The mirrors of one group, and the environment map taken from their middle.
@@ -158,6 +201,7 @@ struct BillboardImpostors {
     reflect: PixelPass,
     bounces: u32,
     margin: f32,
+    steps: u32,
     map: u32,
     /// Takes environment maps; where the scene has a backdrop.
     stage: Option<CaptureStage>,
@@ -176,6 +220,9 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         ("MORPH", backdrop && margin > 0.0),
         ("LAST_DIFFUSE", values.is("last", "diffuse")),
         ("ORIGIN_STORED", values.is("origin", "stored")),
+        ("RELIEF", values.is("relief", "on")),
+        ("FAR_DISTANCE", backdrop && values.is("far", "distance")),
+        ("BORDER_SHARP", values.is("border", "sharp")),
         ("FILTER_MIP", values.is("filter", "mip")),
     ]
     .into_iter()
@@ -188,6 +235,7 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         reflect: setup.pixel_pass("billboard_impostors/reflect.wgsl", &defines)?,
         bounces: if bounces == 0 { scene.bounces } else { bounces },
         margin,
+        steps: values.u32("steps"),
         map: values.u32("map"),
         stage: backdrop.then(|| CaptureStage::new(device)).transpose()?,
         shrink: (backdrop && values.is("filter", "mip"))
@@ -250,7 +298,7 @@ impl ReflectionMethod for BillboardImpostors {
                 size: self.boards.size() as f32,
                 coarsest: (self.boards.levels() - 1) as f32,
                 margin: self.margin,
-                pad: 0,
+                steps: self.steps,
             };
             let name = "billboard-impostors/reflect";
             self.reflect.run(frame, name, (scene, view), record, objects, |pass| {
@@ -279,6 +327,6 @@ mod tests {
     #[rustfmt::skip]
     fn parameters_are_laid_out_as_their_wgsl_twin() {
         assert_layout!("billboard_impostors/reflect.wgsl", "Params", Params,
-            centre, bounces, size, coarsest, margin, pad);
+            centre, bounces, size, coarsest, margin, steps);
     }
 }

@@ -1,0 +1,30 @@
+//! Scenes that are hard on impostors, billboards and depth images alike: extreme magnification.
+
+mod gpu_support;
+
+use gpu_support::{Session, judged};
+use mirrorbench::scene;
+
+/// Bad at a pixel in `dish-close` at a frame.
+fn bad(session: &Session, case: &str, at: u32) -> f64 {
+    let scene = scene::load("dish-close").unwrap();
+    let (_, accuracy, _) = judged(session, &scene, case, [128, 96], at);
+    accuracy.bad_share.one
+}
+
+#[test]
+fn magnification_brings_out_what_an_impostor_leaves_out() {
+    let session = Session::open();
+    for (published, revised) in [
+        ("billboard-impostors", "billboard-impostors@revised"),
+        ("depth-impostors:size=256", "depth-impostors@revised:size=256,step_deg=10"),
+    ] {
+        // At 0.43 m the statue is little larger than it is; at 0.71 m it fills the dish.
+        for case in [published, revised] {
+            let [little, much] = [48, 96].map(|at| bad(&session, case, at));
+            assert!(little < 0.03 && much > little, "{case}: {little} to {much}");
+        }
+        let [published, revised] = [published, revised].map(|case| bad(&session, case, 96));
+        assert!(published > 0.3 && revised < 0.4 * published, "{revised} of {published}");
+    }
+}
