@@ -7,13 +7,13 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use gpu_support::{Session, engine, frame, judged, methods, options};
 use mirrorbench::experiment::engine::Engine;
 use mirrorbench::geometry::depth_rows::{
-    DepthRows, Heights, ImageLine, Limits, Packed, RowShape, Rule, Segment, march, search,
+    DepthRows, Heights, ImageLine, Limits, Packed, RowShape, Rule, Segment, march, search, sweep,
 };
 use mirrorbench::geometry::optics;
 use mirrorbench::geometry::random::SplitMix64;
-use mirrorbench::gpu::{Buffer, ComputePipeline, Frame};
+use mirrorbench::gpu::{Buffer, ComputePipeline, Frame, Image, Shape};
 use mirrorbench::methods::Case;
-use mirrorbench::methods::depth_impostors::build::{RowBuffers, RowBuilder};
+use mirrorbench::methods::depth_impostors::build::{QUADS, RowBuffers, RowBuilder};
 use mirrorbench::scene::{self, FrameRecord, Scene, Status};
 
 const SIZE: u32 = 128;
@@ -38,13 +38,15 @@ fn built(session: &Session, texels: &[f32], shape: RowShape) -> (RowBuffers, Dep
     let device = session.device();
     let heights = Heights { texels, size: SIZE };
     let mut buffers = RowBuffers::new(device, shape, 1).unwrap();
-    buffers.quads = Buffer::with_data(device, "heights", &heights.quads()).unwrap();
+    buffers.quads =
+        Image::with_data(device, "heights", (QUADS, Shape::Array(1)), [SIZE; 2], &heights.quads())
+            .unwrap();
     let mut frame = Frame::new(device).unwrap();
     frame.begin().unwrap();
     let builder = RowBuilder::new(device, shape).unwrap();
     builder.build(&mut frame, "test", &buffers, 0, LIMITS).unwrap();
     frame.submit().unwrap();
-    (buffers, DepthRows::build(heights, shape, LIMITS))
+    (buffers, DepthRows::build(heights, shape, LIMITS, sweep))
 }
 
 /// The height of a row's segments at x, 0 where none is.
@@ -125,7 +127,7 @@ fn shaders_find_what_the_processor_finds() {
         frame.begin().unwrap();
         let pass = frame.pass("test/rows").compute(&pipeline);
         let pass = pass.storage_struct("impostors", &[SIZE, shape.angles, shape.segments, 1]);
-        let pass = pass.buffer("quads", &buffers.quads).optional();
+        let pass = pass.sample("quads", &buffers.quads).optional();
         let pass = pass.buffer("counts", &buffers.counts).optional();
         let pass = pass.buffer("segments", &buffers.segments).optional();
         let pass = pass.buffer("inputs", &given).buffer("outputs", &answer);

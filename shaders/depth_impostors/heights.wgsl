@@ -8,7 +8,7 @@
 @group(0) @binding(3) var portrait_point: texture_2d_array<f32>;
 // Of each texel: its own height and that of its right neighbour, then of the two below these; 16 bits each,
 // 0 where nothing is.
-@group(0) @binding(4) var<storage, read_write> quads: array<vec2<u32>>;
+@group(0) @binding(4) var quads: texture_storage_2d_array<rg32uint, write>;
 
 fn height(texel: vec2<u32>) -> f32 {
     if any(texel >= vec2(build.size)) {
@@ -30,6 +30,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let top = vec2(height(id.xy), height(id.xy + vec2(1u, 0u)));
     let bottom = vec2(height(id.xy + vec2(0u, 1u)), height(id.xy + vec2(1u, 1u)));
-    let at = (build.layer * build.size + id.y) * build.size + id.x;
-    quads[at] = vec2(pack2x16unorm(top), pack2x16unorm(bottom));
+    let quad = vec4(pack2x16unorm(top), pack2x16unorm(bottom), 0u, 0u);
+    textureStore(quads, id.xy, build.layer, quad);
 }

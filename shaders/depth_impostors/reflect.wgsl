@@ -105,7 +105,7 @@ fn shown_at(place: vec2<f32>, layer: u32, portrait: Portrait) -> Shown {
     let low = clamp(floor(place - 0.5), vec2(0.0), vec2(f32(impostors.size) - 2.0));
     let part = clamp(place - 0.5 - low, vec2(0.0), vec2(1.0));
     let corner = vec2<u32>(low);
-    let quad = quads[(layer * impostors.size + corner.y) * impostors.size + corner.x];
+    let quad = textureLoad(quads, corner, layer, 0);
     let heights = vec4(unpack2x16unorm(quad.x), unpack2x16unorm(quad.y));
     let weights = vec4(
         (1.0 - part.x) * (1.0 - part.y),

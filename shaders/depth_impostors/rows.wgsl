@@ -15,7 +15,7 @@ struct Impostors {
 }
 @group(0) @binding(0) var<storage, read> impostors: Impostors;
 // As `heights.wgsl` and `simplify.wgsl` leave them.
-@group(0) @binding(1) var<storage, read> quads: array<vec2<u32>>;
+@group(0) @binding(1) var quads: texture_2d_array<u32>;
 @group(0) @binding(2) var<storage, read> counts: array<u32>;
 @group(0) @binding(3) var<storage, read> segments: array<vec2<u32>>;
 
@@ -49,8 +49,7 @@ fn nearest_height(layer: u32, place: vec2<f32>) -> f32 {
     if any(texel < vec2(0)) || any(texel >= vec2(i32(impostors.size))) {
         return 0.0;
     }
-    let at = (layer * impostors.size + u32(texel.y)) * impostors.size + u32(texel.x);
-    return unpack2x16unorm(quads[at].x).x;
+    return unpack2x16unorm(textureLoad(quads, texel, layer, 0).x).x;
 }
 
 // Of the jump that is a silhouette: no farther behind one than this is its rim, which a surface goes on to

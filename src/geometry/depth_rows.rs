@@ -10,6 +10,7 @@
 mod march;
 mod search;
 mod simplify;
+mod sweep;
 
 use std::f32::consts::PI;
 
@@ -19,6 +20,7 @@ use rayon::prelude::*;
 pub use march::{Marched, march};
 pub use search::{Found, ImageLine, RowHit, RowLine, Rule, degenerate, search};
 pub use simplify::simplify;
+pub use sweep::sweep;
 
 /// Most segments a row can have.
 pub const MOST_SEGMENTS: u32 = 64;
@@ -135,6 +137,17 @@ pub struct Segment {
 pub type Packed = [u32; 2];
 
 impl Segment {
+    /// From the centre of one sample of a row to that of another; on to the sample's border where no
+    /// neighbour begins or ends with the same sample.
+    fn over([first, last]: [u32; 2], joined: [bool; 2], samples: &[f32]) -> Segment {
+        let low = if joined[0] { 0.5 } else { 0.0 };
+        let high = if joined[1] { 0.5 } else { 1.0 };
+        Segment {
+            x: [first as f32 + low, last as f32 + high],
+            height: [first, last].map(|i| samples[i as usize]),
+        }
+    }
+
     pub fn packed(&self, size: u32) -> Packed {
         let pair = |[a, b]: [f32; 2]| {
             let word = |v: f32| (v.clamp(0.0, 1.0) * 65535.0 + 0.5).floor() as u32;
@@ -149,6 +162,10 @@ impl Segment {
     }
 }
 
+/// A rule that simplifies a row of samples into at most so many segments, and says how many they are:
+/// [`simplify`] or [`sweep`].
+pub type Simplify = fn(&[f32], Limits, &mut [Packed]) -> u32;
+
 /// All rows of a depth image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthRows {
@@ -161,7 +178,12 @@ pub struct DepthRows {
 
 impl DepthRows {
     /// "Pre-rotate depth map ... Pre-simplify rows", on all cores.
-    pub fn build(heights: Heights, shape: RowShape, limits: Limits) -> DepthRows {
+    pub fn build(
+        heights: Heights,
+        shape: RowShape,
+        limits: Limits,
+        simplify: Simplify,
+    ) -> DepthRows {
         let mut rows = DepthRows {
             shape,
             counts: vec![0; shape.rows() as usize],
@@ -187,7 +209,7 @@ impl DepthRows {
     }
 }
 
-/// A row of a rotated map before it is simplified, at the samples' centres.
+/// A row of a rotated map before it is simplified, at the samples' centres; of 16 bits, as on the device.
 pub fn sample_row(
     heights: Heights,
     shape: RowShape,
@@ -203,7 +225,8 @@ pub fn sample_row(
         let x = i as f32 + 0.5 - middle;
         // Beyond the disc there is nothing.
         let inside = x * x + across * across <= middle * middle;
-        *sample = if inside { heights.at(origin + x * along, jump) } else { 0.0 };
+        let height = if inside { heights.at(origin + x * along, jump) } else { 0.0 };
+        *sample = (65535.0 * height + 0.5).floor() / 65535.0;
     }
 }
 

@@ -217,6 +217,37 @@ impl Image {
         Ok(image)
     }
 
+    /// An image with one level of given texels, laid out as [`Image::read`] gives them; waits.
+    ///
+    /// # Errors
+    /// As [`Image::new`].
+    pub fn with_data<T: bytemuck::Pod>(
+        device: &Arc<Device>,
+        name: &str,
+        (format, shape): (Format, Shape),
+        size: [u32; 2],
+        texels: &[T],
+    ) -> Result<Image> {
+        let image = Self::new(device, name, format, size, shape)?;
+        let bytes = size_of_val(texels) as u64;
+        assert_eq!(bytes, image.readback_bytes(), "{name}: bytes given");
+        let source = Buffer::with_data(device, name, texels)?;
+        run_once(device, name, |commands| {
+            // SAFETY: recording; `source` has a texel for each of the image's, and both outlive the wait in
+            // `run_once`.
+            unsafe {
+                device.raw.cmd_copy_buffer_to_image(
+                    commands,
+                    source.raw,
+                    image.owner.raw,
+                    vk::ImageLayout::GENERAL,
+                    &[image.all_layers()],
+                );
+            }
+        })?;
+        Ok(image)
+    }
+
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -279,15 +310,19 @@ impl Image {
         texels * u64::from(self.shape.layers()) * self.format.texel_bytes()
     }
 
-    /// Record a copy of all layers into a readback buffer. Colour formats only.
-    pub(super) fn copy_to(&self, commands: vk::CommandBuffer, target: &Buffer) {
-        let region = vk::BufferImageCopy::default()
+    /// Level 0 of all layers, packed in a buffer. Colour formats only.
+    fn all_layers(&self) -> vk::BufferImageCopy {
+        vk::BufferImageCopy::default()
             .image_subresource(
                 vk::ImageSubresourceLayers::default()
                     .aspect_mask(vk::ImageAspectFlags::COLOR)
                     .layer_count(self.shape.layers()),
             )
-            .image_extent(vk::Extent3D { width: self.size[0], height: self.size[1], depth: 1 });
+            .image_extent(vk::Extent3D { width: self.size[0], height: self.size[1], depth: 1 })
+    }
+
+    /// Record a copy of all layers into a readback buffer. Colour formats only.
+    pub(super) fn copy_to(&self, commands: vk::CommandBuffer, target: &Buffer) {
         // SAFETY: recording; `target` was made `readback_bytes` long by the callers, and both
         // outlive the submit, which is waited for.
         unsafe {
@@ -296,7 +331,7 @@ impl Image {
                 self.owner.raw,
                 vk::ImageLayout::GENERAL,
                 target.raw,
-                &[region],
+                &[self.all_layers()],
             );
         }
     }

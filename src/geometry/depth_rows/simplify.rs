@@ -104,18 +104,13 @@ impl Pieces {
         self.count += splits;
     }
 
-    /// A piece's segment, from sample centre to sample centre, on to the texel's border where the next piece
-    /// does not begin with the same sample.
     fn segment(&self, i: usize, samples: &[f32]) -> Segment {
         let piece = self.list[i];
         let joined = |j: usize, sample: u32, of: fn(&Piece) -> u32| {
             j < self.count && of(&self.list[j]) == sample
         };
-        let low = if joined(i.wrapping_sub(1), piece.first, |p| p.last) { 0.5 } else { 0.0 };
-        let high = if joined(i + 1, piece.last, |p| p.first) { 0.5 } else { 1.0 };
-        Segment {
-            x: [piece.first as f32 + low, piece.last as f32 + high],
-            height: [piece.first, piece.last].map(|i| samples[i as usize]),
-        }
+        let before = joined(i.wrapping_sub(1), piece.first, |p| p.last);
+        let after = joined(i + 1, piece.last, |p| p.first);
+        Segment::over([piece.first, piece.last], [before, after], samples)
     }
 }

@@ -40,7 +40,26 @@ fn shape(step_deg: u32, segments: u32) -> RowShape {
 }
 
 fn rows(texels: &[f32], shape: RowShape) -> DepthRows {
-    DepthRows::build(Heights { texels, size: SIZE }, shape, LIMITS)
+    rows_by(simplify, texels, shape)
+}
+
+fn rows_by(rule: Simplify, texels: &[f32], shape: RowShape) -> DepthRows {
+    DepthRows::build(Heights { texels, size: SIZE }, shape, LIMITS, rule)
+}
+
+/// Mean error of rows at their samples.
+fn error(rows: &DepthRows, texels: &[f32]) -> f32 {
+    let heights = Heights { texels, size: SIZE };
+    let mut samples = vec![0.0; SIZE as usize];
+    let mut sum = 0.0;
+    for (map, row) in (0..rows.shape.rows()).map(|row| (row / SIZE, row % SIZE)) {
+        sample_row(heights, rows.shape, LIMITS.jump, (map, row), &mut samples);
+        let kept = rows.row(map, row);
+        for (i, &sample) in samples.iter().enumerate() {
+            sum += (height_at(kept, i as f32 + 0.5) - sample).abs();
+        }
+    }
+    sum / (rows.shape.rows() * SIZE) as f32
 }
 
 /// The height of a row's segments at x, 0 where none is.
@@ -88,6 +107,11 @@ proptest! {
         most in 1usize..20,
     ) {
         let mut segments = vec![[0; 2]; most];
+        let swept = sweep(&heights, LIMITS, &mut segments) as usize;
+        prop_assert!(swept <= most);
+        let list: Vec<_> = segments[..swept].iter().map(|&s| Segment::unpacked(s, 32)).collect();
+        prop_assert!(list.windows(2).all(|pair| pair[0].x[1] <= pair[1].x[0] + 1e-3), "{list:?}");
+        prop_assert_eq!(swept > 0, heights.iter().any(|&h| h > 0.0));
         let count = simplify(&heights, LIMITS, &mut segments) as usize;
         prop_assert!(count <= most);
         let list: Vec<_> = segments[..count].iter().map(|&s| Segment::unpacked(s, 32)).collect();
@@ -115,24 +139,34 @@ proptest! {
 #[test]
 fn more_segments_are_nearer_to_the_row() {
     let texels = image(landscape);
-    let heights = Heights { texels: &texels, size: SIZE };
-    let error = |segments: u32| {
-        let rows = rows(&texels, shape(20, segments));
-        let mut samples = vec![0.0; SIZE as usize];
-        let mut sum = 0.0;
-        for map in 0..rows.shape.angles {
-            for row in 0..SIZE {
-                sample_row(heights, rows.shape, LIMITS.jump, (map, row), &mut samples);
-                let kept = rows.row(map, row);
-                let error = |i: usize| (height_at(kept, i as f32 + 0.5) - samples[i]).abs();
-                sum += (0..SIZE as usize).map(error).sum::<f32>();
-            }
+    for rule in [simplify, sweep] as [Simplify; 2] {
+        let error_of = |segments: u32| error(&rows_by(rule, &texels, shape(20, segments)), &texels);
+        let errors = [2, 4, 8, 16, 32].map(error_of);
+        assert!(errors.is_sorted_by(|a, b| a > b), "{errors:?}");
+        assert!(errors[4] < LIMITS.tolerance, "{errors:?}");
+    }
+}
+
+#[test]
+fn rows_swept_are_nearly_as_near_as_rows_split_and_within_the_tolerance_where_segments_do() {
+    for texels in [image(landscape), image(ball)] {
+        for segments in [4, 8, 16] {
+            let [split, swept] = ([simplify, sweep] as [Simplify; 2])
+                .map(|rule| error(&rows_by(rule, &texels, shape(20, segments)), &texels));
+            let allowed = (1.4 * split).max(LIMITS.tolerance);
+            assert!(swept < allowed, "{segments} segments: {split} split, {swept} swept");
         }
-        sum / (rows.shape.rows() * SIZE) as f32
-    };
-    let errors = [2, 4, 8, 16, 32].map(error);
-    assert!(errors.is_sorted_by(|a, b| a > b), "{errors:?}");
-    assert!(errors[4] < LIMITS.tolerance, "{errors:?}");
+    }
+    // Level at both ends, where segments go on beyond the samples' centres.
+    let wave = |i: u32| 0.5 + 0.1 * (6.0 * PI * i as f32 / (SIZE - 1) as f32).cos();
+    let samples: Vec<f32> = (0..SIZE).map(wave).collect();
+    let mut segments = [[0; 2]; 64];
+    let count = sweep(&samples, LIMITS, &mut segments) as usize;
+    assert!((30..60).contains(&count), "{count}");
+    for (i, &sample) in samples.iter().enumerate() {
+        let error = (height_at(&segments[..count], i as f32 + 0.5) - sample).abs();
+        assert!(error < 1.02 * LIMITS.tolerance, "{error} at {i}");
+    }
 }
 
 #[test]

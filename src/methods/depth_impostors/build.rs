@@ -6,11 +6,14 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::error::Result;
 use crate::geometry::depth_rows::{DepthRows, Limits, RowShape};
-use crate::gpu::{Buffer, ComputePipeline, Device, Frame, Slice};
+use crate::gpu::{Buffer, ComputePipeline, Device, Format, Frame, Image, Shape, Slice};
 use crate::stages::Portraits;
 
-/// Most samples the passes hold at a time, 2 bytes each.
-const MOST_SAMPLES: u32 = 1 << 24;
+/// Most samples the passes hold at a time, 2 bytes each, and 4 for the pieces they may make up.
+const MOST_SAMPLES: u32 = 1 << 23;
+
+/// Of depth images.
+pub const QUADS: Format = Format::Rg32Uint;
 
 /// WGSL `Build` of `shaders/depth_impostors/build.wgsl`.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -30,7 +33,7 @@ struct Build {
 pub struct RowBuffers {
     pub shape: RowShape,
     /// Heights, four neighbours a texel, as `heights.wgsl` packs them.
-    pub quads: Buffer,
+    pub quads: Image,
     /// Segments in use of each row, map after map, layer after layer.
     pub counts: Buffer,
     /// `shape.segments` a row.
@@ -44,10 +47,10 @@ impl RowBuffers {
         let storage = |name: &str, bytes_each: u32, count: u32| {
             Buffer::storage(device, name, u64::from(bytes_each) * u64::from(count))
         };
-        let rows = layers * shape.rows();
+        let (size, rows) = ([shape.size; 2], layers * shape.rows());
         Ok(RowBuffers {
             shape,
-            quads: storage("impostor heights", 8, layers * shape.size * shape.size)?,
+            quads: Image::new(device, "impostor heights", QUADS, size, Shape::Array(layers))?,
             counts: storage("impostor row counts", 4, rows)?,
             segments: storage("impostor rows", 8 * shape.segments, rows)?,
         })
@@ -76,7 +79,9 @@ pub struct RowBuilder {
     heights: ComputePipeline,
     rotate: ComputePipeline,
     simplify: ComputePipeline,
-    samples: Buffer,
+    /// Eight a texel, a row of texels each; a map a layer.
+    samples: Image,
+    pieces: Buffer,
     shape: RowShape,
     /// Maps whose samples fit at a time.
     batch: u32,
@@ -88,11 +93,14 @@ impl RowBuilder {
             |file: &str| ComputePipeline::new(device, &format!("depth_impostors/{file}.wgsl"), &[]);
         let texels = shape.size * shape.size;
         let batch = (MOST_SAMPLES / texels).clamp(1, shape.angles);
+        let pieces = 4 * u64::from(batch * texels);
+        let (rows, maps) = ([shape.size / 8, shape.size], Shape::Array(batch));
         Ok(RowBuilder {
             heights: pipeline("heights")?,
             rotate: pipeline("rotate")?,
             simplify: pipeline("simplify")?,
-            samples: Buffer::storage(device, "rotated heights", 2 * u64::from(batch * texels))?,
+            samples: Image::new(device, "rotated heights", Format::Rgba32Uint, rows, maps)?,
+            pieces: Buffer::storage(device, "pieces of rotated rows", pieces)?,
             shape,
             batch,
         })
@@ -114,7 +122,7 @@ impl RowBuilder {
             .slice("portraits", portraits)
             .sample("portrait_albedo", &taken.albedo)
             .sample("portrait_point", &taken.point)
-            .buffer("quads", &buffers.quads)
+            .store("quads", &buffers.quads)
             .over_pixels([self.shape.size; 2])
     }
 
@@ -134,16 +142,17 @@ impl RowBuilder {
                 .pass(&format!("{name}/rotate"))
                 .compute(&self.rotate)
                 .storage_struct("build", &build)
-                .buffer("quads", &buffers.quads)
-                .buffer("samples", &self.samples)
-                .over(rows * (self.shape.size / 8))?;
+                .sample("quads", &buffers.quads)
+                .store("samples", &self.samples)
+                .over_pixels([self.shape.size / 8, rows])?;
             frame
                 .pass(&format!("{name}/simplify"))
                 .compute(&self.simplify)
                 .storage_struct("build", &build)
-                .buffer("samples", &self.samples)
+                .sample("samples", &self.samples)
                 .buffer("counts", &buffers.counts)
                 .buffer("segments", &buffers.segments)
+                .buffer("pieces", &self.pieces)
                 .over(rows)?;
         }
         Ok(())

@@ -28,7 +28,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use crate::error::{Error, Result};
-use crate::geometry::depth_rows::{DepthRows, Heights, Limits, RowShape};
+use crate::geometry::depth_rows::{DepthRows, Heights, Limits, RowShape, simplify};
 use crate::gpu::{Device, Frame};
 use crate::scene::{Moment, ObjectId};
 use crate::stages::{
@@ -203,7 +203,7 @@ impl ReflectionMethod for DepthImpostors {
             self.reflect.run(frame, name, (scene, view), record, reflectors, |pass| {
                 let pass = pass
                     .storage_struct("impostors", &impostors)
-                    .buffer("quads", &rows.quads)
+                    .sample("quads", &rows.quads)
                     .buffer("counts", &rows.counts)
                     .optional()
                     .buffer("segments", &rows.segments)
@@ -305,7 +305,7 @@ impl DepthImpostors {
             let texels = group.rows.heights(layer)?;
             let rows = frame.cpu("depth-impostors/build", || {
                 let heights = Heights { texels: &texels, size: self.shape.size };
-                Ok(DepthRows::build(heights, self.shape, limits))
+                Ok(DepthRows::build(heights, self.shape, limits, simplify))
             })?;
             group.rows.copy(frame, NAME, layer, &rows)?;
         }
