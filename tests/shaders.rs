@@ -45,6 +45,7 @@ fn every_shader_compiles() {
             &morphed,
             &mixed,
             &further,
+            &[("FURTHER", 1), ("THRICE", 1), ("RECORD_FULL", 1)],
             &billboards[..5],
             &billboards,
             &[("FADES", 1), ("BY_ANGLE", 1)],
