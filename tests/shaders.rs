@@ -55,6 +55,7 @@ fn every_shader_compiles() {
             &morphed,
             &mixed,
             &further,
+            &[("FURTHER", 1), ("THRICE", 1), ("RECORD_FULL", 1)],
             &billboards[..5],
             &billboards,
             &revised_boards[..3],

@@ -17,12 +17,14 @@
 @group(0) @binding(46) var<storage, read_write> sheaves: array<Sheaf>;
 #endif
 
-// Cells that a piece of a sheaf goes on by.
+// Cells that a piece of a sheaf goes on by, or its own width where that is more.
 const STRIDE: f32 = 1.0;
 // What a sheaf is wider by, as a share, and metres: points that rounding puts into no bundle are given to the
 // one they are next to.
 const MARGIN: f32 = 0.01;
 const LEAST_MARGIN: f32 = 1e-5;
+// Rays that part wider are not followed all the way.
+const SHORTEST: f32 = 0.2;
 
 // Cells of a level between two, both among them.
 struct Cells {
@@ -47,6 +49,28 @@ fn list(cell: u32, sheaf: u32) {
 }
 
 #ifndef FILL
+// The least that a direction between rays can be long, each of which has length 1: what is between them at some
+// length is nearer than that.
+fn shortest(corner: vec2<u32>, end: vec2<u32>) -> f32 {
+    var sum = vec3(0.0);
+    for (var y = corner.y; y <= end.y; y += 1u) {
+        for (var x = corner.x; x <= end.x; x += 1u) {
+            sum += rays[y * bins.size + x].direction;
+        }
+    }
+    let middle = sum / max(length(sum), 1e-9);
+    var least = 1.0;
+    for (var y = corner.y; y <= end.y; y += 1u) {
+        for (var x = corner.x; x <= end.x; x += 1u) {
+            let ray = rays[y * bins.size + x];
+            if (ray.kind & KIND) != RAY_NONE {
+                least = min(least, dot(ray.direction, middle));
+            }
+        }
+    }
+    return max(least, SHORTEST);
+}
+
 // The sheaf's record, from its rays.
 fn sheaf_of(index: u32) -> Sheaf {
     let corner = corner_of(index);
@@ -65,6 +89,7 @@ fn sheaf_of(index: u32) -> Sheaf {
             }
         }
     }
+    out.length /= shortest(corner, end);
     let margin = MARGIN * (out.high - out.low) + LEAST_MARGIN;
     let margin_slope = MARGIN * (out.high_slope - out.low_slope);
     out.low -= margin;
@@ -98,7 +123,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var length = 0.0;
     while length < sheaf.length {
         let at = level_of(farthest(0.5 * (before_low + before_high)));
-        length = min(length + STRIDE * 2.0 * half_of(at) / f32(bins.side), sheaf.length);
+        let wide = before_high - before_low;
+        let stride = max(STRIDE * 2.0 * half_of(at) / f32(bins.side), max(wide.x, max(wide.y, wide.z)));
+        length = min(length + stride, sheaf.length);
         let after_low = sheaf.low + length * sheaf.low_slope - bins.centre;
         let after_high = sheaf.high + length * sheaf.high_slope - bins.centre;
         let low = min(before_low, after_low);

@@ -19,6 +19,10 @@
 @group(0) @binding(45) var<storage, read> lists: array<u32>;
 @group(0) @binding(46) var<storage, read> sheaves: array<Sheaf>;
 #endif
+#ifdef FURTHER
+// Of each ray the point of the first reflector on its way, and the metres from there to where it leaves the last.
+@group(0) @binding(47) var<storage, read> firsts: array<vec4<f32>>;
+#endif
 
 const LOOK_UPS: u32 = 0u;
 const RAYS: u32 = 1u;
@@ -114,7 +118,9 @@ fn place_in(bundle: Bundle, v: vec3<f32>, away: f32) -> Place {
 // caustic a path is the shortest of those beside it, as all are before a convex mirror. Of those that of the shortest
 // path; of equals the first, so that the order of lists does not matter.
 struct Found {
+    // Where it leaves the last reflector, and the first, with the metres between.
     origin: vec3<f32>,
+    first: vec4<f32>,
     caustics: u32,
     // From the eye to the point.
     path: f32,
@@ -131,10 +137,22 @@ fn bundle_at(texel: vec2<u32>) -> Bundle {
     return bundle_between(rays[first], rays[first + 1u], rays[below], rays[below + 1u]);
 }
 
+// Where a ray of the bundle at a texel leaves the first reflector, and the metres from there to the last.
+fn first_of(place: Place, texel: u32) -> vec4<f32> {
+#ifdef FURTHER
+    let above = mix(firsts[texel], firsts[texel + 1u], place.at.x);
+    let below = mix(firsts[texel + bins.size], firsts[texel + bins.size + 1u], place.at.x);
+    return mix(above, below, place.at.y);
+#else
+    return vec4(place.origin, 0.0);
+#endif
+}
+
 // With what a bundle gives, at its first texel.
 fn with_place(found: Found, place: Place, texel: vec2<u32>) -> Found {
-    let path = dot(place.origin - camera.eye, arriving(camera, place.origin)) + place.length;
     let index = texel.y * bins.size + texel.x;
+    let first = first_of(place, index);
+    let path = dot(first.xyz - camera.eye, arriving(camera, first.xyz)) + (first.w + place.length);
     if found.found {
         let is_level = place.caustics == found.caustics;
         let is_same = is_level && path == found.path;
@@ -142,7 +160,7 @@ fn with_place(found: Found, place: Place, texel: vec2<u32>) -> Found {
             return found;
         }
     }
-    return Found(place.origin, place.caustics, path, index, true);
+    return Found(place.origin, first, place.caustics, path, index, true);
 }
 
 // With what all bundles between two texels give, the second beyond the last.
@@ -268,9 +286,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         count(LOOK_UPS, 1u);
         count(RAYS, examined);
         if found.found {
-            // "Push this point along the ray from the desired view to itself" (figure 7).
-            let p = found.origin;
-            corner.image = p + distance(v, p) * arriving(camera, p);
+            // "Push this point along the ray from the desired view to itself" (figure 7); over more reflectors, by
+            // the way over all of them.
+            let p = found.first.xyz;
+            corner.image = p + (found.first.w + distance(v, found.origin)) * arriving(camera, p);
             corner.found = packed_found(vec2(0.0), SHOWN);
             count(VALID, 1u);
         }

@@ -105,6 +105,8 @@ impl TreeLayout {
 pub struct SceneTree {
     device: Arc<Device>,
     layout: TreeLayout,
+    /// Whether an object's triangles are in it.
+    holds: fn(&Scene, ObjectId) -> bool,
     /// Only for a tree that is fitted.
     fitting: Option<Fitting>,
     built: Option<Built>,
@@ -135,7 +137,12 @@ impl SceneTree {
             }),
             TreeKind::Binary(TreeUpdate::Rebuild) | TreeKind::Wide => None,
         };
-        Ok(SceneTree { device: device.clone(), layout, fitting, built: None })
+        Ok(SceneTree { device: device.clone(), layout, holds: |_, _| true, fitting, built: None })
+    }
+
+    /// One that holds the scene's reflectors and nothing else.
+    pub fn of_reflectors(device: &Arc<Device>, layout: TreeLayout) -> Result<Self> {
+        Ok(SceneTree { holds: Scene::is_reflector, ..SceneTree::new(device, layout)? })
     }
 
     /// Make it that of the frame's moment. Passes and scopes are named under `owner`.
@@ -167,7 +174,7 @@ impl SceneTree {
     }
 
     fn build(&self, scene: &GpuScene) -> Result<Built> {
-        let (triangles, owners) = world_triangles(&scene.scene, scene.moment());
+        let (triangles, owners) = world_triangles(&scene.scene, scene.moment(), self.holds);
         let [most_nodes, most_slots] = self.layout.part_lengths();
         let (nodes, order, moving) = match self.layout.kind {
             TreeKind::Binary(update) => {
@@ -256,10 +263,14 @@ fn check_depth(scene: &Scene, depth: u32, deepest: u32) -> Result<()> {
     )))
 }
 
-/// All triangles of a moment in the world, and the object and number of each.
-fn world_triangles(scene: &Scene, moment: &Moment) -> (Vec<[Vec3; 3]>, Vec<(ObjectId, u32)>) {
+/// The triangles of a moment in the world of those objects that are chosen, and the object and number of each.
+fn world_triangles(
+    scene: &Scene,
+    moment: &Moment,
+    chosen: fn(&Scene, ObjectId) -> bool,
+) -> (Vec<[Vec3; 3]>, Vec<(ObjectId, u32)>) {
     let (mut triangles, mut owners) = (Vec::new(), Vec::new());
-    for object in 0..scene.objects.len() as ObjectId {
+    for object in (0..scene.objects.len() as ObjectId).filter(|&object| chosen(scene, object)) {
         for (corners, number) in scene.world_triangles(moment, object).zip(0..) {
             triangles.push(corners);
             owners.push((object, number));

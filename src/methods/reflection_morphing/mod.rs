@@ -27,6 +27,8 @@ mod nodes;
 mod orders;
 mod params;
 pub mod ray_map;
+#[cfg(test)]
+mod tests;
 mod trace;
 
 use crate::error::{Error, Result};
@@ -56,12 +58,15 @@ pub const INFO: MethodInfo = MethodInfo {
     refracts: true,
     variants: &["published", "revised"],
     params: params::PARAMS,
-    limits: "one reflection a vertex and chain of reflectors (`bounces`, one with nodes=eye); reflectors that move cost \
+    limits: "one reflection a vertex and chain of reflectors (`bounces`); reflectors that move cost \
              eight octrees a frame, but not with nodes=eye; what glass lets through with nodes=eye alone, by its first \
              surface; vertices no ray passes by take their triangles with them",
     passes: &[
         "reflection-morphing/subdivide",
         "reflection-morphing/octree",
+        "reflection-morphing/build",
+        "reflection-morphing/place",
+        "reflection-morphing/refit",
         "reflection-morphing/vertices",
         "footprint/clear-list",
         "footprint/list",
@@ -78,9 +83,10 @@ pub const INFO: MethodInfo = MethodInfo {
         "reflection-morphing/project",
         "reflection-morphing/reflected",
         "reflection-morphing/shown",
+        "reflection-morphing/follow",
         "reflection-morphing/shown-background",
     ],
-    counters: &["look-ups", "rays", "valid", "entries", "no-room"],
+    counters: &["look-ups", "rays", "valid", "entries", "no-room", "followed"],
     new: Some(new),
 };
 
@@ -225,7 +231,8 @@ impl ReflectionMorphing {
         let Some(State { source, vertices }) = &mut self.state else { return Ok(()) };
         let nodes = &mut self.nodes;
         self.morph.look_up(frame, scene, (source, vertices), nodes, trace, record)?;
-        self.morph.run(frame, scene, (source, vertices), corners, trace, (view, record))?;
+        let camera = (&view.camera, record);
+        self.morph.run(frame, scene, (source, vertices), corners, trace, camera)?;
         let to = Drawing { view, record, source, corners: &vertices.corners };
         match &self.orders {
             Some(orders) if trace.order > 1 => orders.draw(frame, scene, to, trace)?,

@@ -14,7 +14,7 @@ use crate::gpu::{Buffer, ComputePipeline, Defines, Device, Frame, Pass};
 use crate::methods::reflected::Corner;
 use crate::methods::source::{Lists, Source};
 use crate::scene::{ObjectId, Scene};
-use crate::stages::{GpuScene, ReflectionRecord, View};
+use crate::stages::{CameraUniform, GpuScene, ReflectionRecord};
 
 /// Rays of a trace that are looked through one by one where leaves beside a vertex's own are searched: most leaves
 /// hold none of a rare trace, so nearly all of them would be opened.
@@ -67,7 +67,7 @@ pub struct Vertices {
     still: Places,
     moving: Places,
     /// Of each trace met so far: for each location, and each vertex, where it is seen.
-    points: BTreeMap<u32, Buffer>,
+    pub points: BTreeMap<u32, Buffer>,
     /// [`Corner`]s for the trace morphed last.
     pub corners: Buffer,
 }
@@ -165,7 +165,7 @@ impl Morph {
         (source, vertices): (&Source, &Vertices),
         corners: &[grid::Corner; 8],
         trace: Trace,
-        (view, record): (&View, &ReflectionRecord),
+        (camera, record): (&CameraUniform, &ReflectionRecord),
     ) -> Result<()> {
         let morph = MorphStruct {
             weights: corners.map(|corner| corner.weight),
@@ -178,7 +178,7 @@ impl Morph {
         record
             .bind_counters(scene.bind(pass))
             .storage_struct("morph", &morph)
-            .uniform("camera", &view.camera)
+            .uniform("camera", camera)
             .buffer("vertices", &source.vertices)
             .buffer("owners", &source.owners)
             .buffer("points", &vertices.points[&trace.packed])

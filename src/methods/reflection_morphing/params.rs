@@ -32,7 +32,7 @@ pub const PARAMS: &[Param] = &[
         name: "bounces",
         kind: Kind::Integer { min: 1, max: TRACE_BOUNCES as i64 },
         defaults: &["1"],
-        needs: GRID,
+        needs: None,
         doc: "longest chain of mirrors, and layers of ray maps (4.1; section 8 has 1)",
     },
     Param {
@@ -40,7 +40,8 @@ pub const PARAMS: &[Param] = &[
         kind: Kind::Choice(&["apart", "mixed"]),
         defaults: &["apart"],
         needs: Some(("bounces", &["2", "3", "4"])),
-        doc: "a vertex has one projection by each chain of mirrors, and triangles never join two; or one by               the nearest ray of any",
+        doc: "a vertex has one projection by each chain of mirrors, and triangles never join two; or (nodes=grid) one \
+              by the nearest ray of any",
     },
     Param {
         name: "still",

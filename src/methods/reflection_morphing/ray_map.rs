@@ -60,7 +60,7 @@ impl<'s> RayMapper<'s> {
     }
 
     /// What one camera ray gives, in the order its light is met.
-    fn chain(&self, ray: &Ray, layers: u32) -> Vec<RaySegment> {
+    pub(super) fn chain(&self, ray: &Ray, layers: u32) -> Vec<RaySegment> {
         let mut segments = Vec::new();
         let Some(mut hit) = self.tracer.first(ray) else { return segments };
         let (mut incident, mut trace) = (ray.direction, 0);

@@ -1,5 +1,5 @@
-//! Rays of one reflector as the eye sees it, and the cells that list them: what a node's ray map and octree
-//! are, made on the device in every frame.
+//! Rays of one reflector as the eye sees it, and the cells that list them or others: what a node's ray map and
+//! octree are, made on the device in every frame.
 
 use std::sync::Arc;
 
@@ -24,14 +24,14 @@ pub struct BinsStruct {
     half: f32,
     levels: u32,
     room: u32,
-    reflector: ObjectId,
+    pub reflector: ObjectId,
     lobe: u32,
 }
 
 /// WGSL `EyeRay`.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-struct RayStruct {
+pub struct RayStruct {
     origin: [f32; 3],
     kind: u32,
     direction: [f32; 3],
@@ -73,8 +73,8 @@ pub struct Bins {
     sum: [ComputePipeline; 2],
     fill: ComputePipeline,
     gbuffer: GBuffer,
-    /// One of each texel.
-    rays: Buffer,
+    /// [`RayStruct`], one of each texel.
+    pub rays: Buffer,
     sheaves: Buffer,
     counts: Buffer,
     /// Where each cell's list begins, within its block and for each block.
@@ -84,7 +84,7 @@ pub struct Bins {
     /// Entries that there is room for.
     room: u32,
     /// Texels a side.
-    size: u32,
+    pub size: u32,
     /// What all rays are clipped with.
     extent: Extent,
 }
@@ -130,51 +130,56 @@ impl Bins {
         })
     }
 
-    /// Trace and list the rays of a reflector that a camera sees. Gives what look-ups are bound with.
-    pub fn build(
+    /// Trace the rays of a reflector that a camera sees, which has these points.
+    pub fn trace(
         &self,
         frame: &mut Frame,
         scene: &GpuScene,
         view: &CameraUniform,
-        mirror: &Mirror,
-        record: &ReflectionRecord,
-    ) -> Result<BinsStruct> {
-        let points = scene.scene.closed_points_of(scene.moment(), mirror.object);
-        let camera = view.fitted(&points).unwrap_or_else(|| view.widened(2.0));
-        let bins = self.cubes(&points, mirror);
-        self.gbuffer.draw(frame, scene, "reflection-morphing", mirror.object, &camera)?;
+        (bins, points): (&BinsStruct, &[Vec3]),
+    ) -> Result<()> {
+        let camera = view.fitted(points).unwrap_or_else(|| view.widened(2.0));
+        self.gbuffer.draw(frame, scene, "reflection-morphing", bins.reflector, &camera)?;
         let pass = frame.pass("reflection-morphing/rays").compute(&self.rays_of);
         scene
             .bind(pass)
-            .storage_struct("bins", &bins)
+            .storage_struct("bins", bins)
             .uniform("camera", &camera)
             .sample("mirror_position", &self.gbuffer.position)
             .sample("mirror_normal", &self.gbuffer.normal)
             .buffer("rays", &self.rays)
-            .over_pixels([self.size; 2])?;
+            .over_pixels([self.size; 2])
+    }
+
+    /// Have cells list rays, one of each texel.
+    pub fn list(
+        &self,
+        frame: &mut Frame,
+        bins: &BinsStruct,
+        rays: &Buffer,
+        record: &ReflectionRecord,
+    ) -> Result<()> {
         frame.pass("reflection-morphing/clear").fill(&[&self.counts], 0)?;
         let pass = frame.pass("reflection-morphing/count").compute(&self.count);
-        let count = pass.storage_struct("bins", &bins).buffer("rays", &self.rays);
+        let count = pass.storage_struct("bins", bins).buffer("rays", rays);
         let sheaves = (self.size - 1).div_ceil(SHEAF).pow(2);
         count.buffer("sheaves", &self.sheaves).buffer("counts", &self.counts).over(sheaves)?;
         let cells = bins.levels * SIDE.pow(3) + BLOCK;
         for (sum, invocations) in self.sum.iter().zip([cells / 4, 1]) {
             let pass = frame.pass("reflection-morphing/sum").compute(sum);
-            let pass = record.bind_counters(pass).storage_struct("bins", &bins).optional();
+            let pass = record.bind_counters(pass).storage_struct("bins", bins).optional();
             let pass = pass.buffer("counts", &self.counts).optional();
             let pass = pass.buffer("starts", &self.starts).optional();
             pass.buffer("blocks", &self.blocks).over(invocations)?;
         }
         let pass = frame.pass("reflection-morphing/fill").compute(&self.fill);
-        let pass = pass.storage_struct("bins", &bins).buffer("counts", &self.counts);
-        self.bind(pass).over(sheaves)?;
-        Ok(bins)
+        let pass = pass.storage_struct("bins", bins).buffer("counts", &self.counts);
+        self.bind(pass).over(sheaves)
     }
 
-    /// Bind rays and lists.
+    /// Bind what lists hold.
     pub fn bind<'f>(&self, pass: Pass<'f>) -> Pass<'f> {
         let lists = [
-            ("rays", &self.rays),
             ("sheaves", &self.sheaves),
             ("starts", &self.starts),
             ("blocks", &self.blocks),
@@ -183,8 +188,8 @@ impl Bins {
         lists.into_iter().fold(pass, |pass, (name, list)| pass.buffer(name, list).optional())
     }
 
-    /// Cubes about what there is of a reflector, the last of which holds the scene.
-    fn cubes(&self, points: &[Vec3], mirror: &Mirror) -> BinsStruct {
+    /// Cubes about the points of a reflector, the last of which holds the scene.
+    pub fn cubes(&self, points: &[Vec3], mirror: &Mirror) -> BinsStruct {
         let (low, high) = points
             .iter()
             .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));

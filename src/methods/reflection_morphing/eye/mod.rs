@@ -18,12 +18,15 @@
 //! Glass: "if the ray octrees contained refracted rays instead of reflected rays, it would be possible to render
 //! curved refractive surfaces quickly and correctly" (section 9). They do, of its first surface: what lies behind it
 //! is taken to be within it, as under water.
+//!
+//! More than one reflector: see `further`.
 
 mod bins;
+mod further;
 #[cfg(test)]
 mod tests;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::geometry::ray_octree::Extent;
 use crate::gpu::{Buffer, ComputePipeline, Frame};
 use crate::methods::reflected::{Corner, Reflected};
@@ -32,7 +35,10 @@ use crate::methods::{ReflectionMethod, Setup, Want};
 use crate::scene::Lobe;
 use crate::stages::{CameraUniform, GpuScene, MirroredEnvironment, ReflectionRecord, View};
 
+use super::orders::Drawing;
+use super::trace::Trace;
 use bins::{Bins, BinsStruct, Mirror};
+use further::Further;
 
 pub struct EyeNode {
     /// Longest edge of diffuse meshes, metres; 0 as modelled.
@@ -43,7 +49,9 @@ pub struct EyeNode {
     reflected: Reflected,
     /// Draws what glass lets through, where there is any.
     refracted: Option<Reflected>,
-    /// What is reflected, and the [`Corner`]s found for the reflector at hand; made by the first `prepare`.
+    /// Of chains of more than one reflector, where there can be any.
+    further: Option<Further>,
+    /// What is reflected, and the [`Corner`]s found for the trace at hand; made by the first `prepare`.
     state: Option<(Source, Buffer)>,
 }
 
@@ -51,27 +59,33 @@ impl EyeNode {
     /// `extent`: what rays are clipped with.
     ///
     /// # Errors
-    /// As of pipelines, images and lists.
+    /// As of pipelines, images and lists; [`Error::Usage`] for traces that are not kept apart.
     pub fn new(setup: &Setup, extent: Extent) -> Result<EyeNode> {
         let &Setup { device, mode, values, .. } = setup;
-        let mut defines = mode.defines();
-        if values.is("lookup", "brute-force") {
-            defines.push(("BRUTE_FORCE", 1));
+        if values.is("traces", "mixed") {
+            return Err(Error::Usage(
+                "reflection-morphing:nodes=eye,traces=mixed: rays of one bundle are of one trace, and with \
+                 nodes=eye no others are looked up; valid: traces=apart, or nodes=grid"
+                    .to_owned(),
+            ));
         }
+        let defines = look_up_defines(setup);
         let project =
             ComputePipeline::new(device, "reflection_morphing/eye_project.wgsl", &defines)?;
         let drawing = |lobe: &[(&'static str, u32)]| {
             let defines = [&mode.defines()[..], &[("TWO_SIDED", 1)], lobe].concat();
             Reflected::new(device, mode, &defines, 0.0)
         };
-        let refracts = setup.scene.scene.refracts();
+        let scene = &setup.scene.scene;
+        let goes_on = values.u32("bounces") > 1 && scene.reflectors().len() > 1;
         Ok(EyeNode {
             edge: values.f32("subdivide"),
             bins: Bins::new(device, mode, values.u32("map"), extent)?,
             environment: MirroredEnvironment::new(device, mode)?,
             project,
             reflected: drawing(&[])?,
-            refracted: refracts.then(|| drawing(&[("REFRACTED", 1)])).transpose()?,
+            refracted: scene.refracts().then(|| drawing(&[("REFRACTED", 1)])).transpose()?,
+            further: goes_on.then(|| Further::new(setup, &defines)).transpose()?,
             state: None,
         })
     }
@@ -89,12 +103,38 @@ impl EyeNode {
         let pass = record.bind_counters(scene.bind(pass)).storage_struct("bins", bins);
         self.bins
             .bind(pass)
+            .buffer("rays", &self.bins.rays)
             .uniform("camera", camera)
             .buffer("vertices", &source.vertices)
             .buffer("owners", &source.owners)
             .buffer("corners", corners)
             .over(source.count)
     }
+
+    /// Trace and list the rays of a reflector that the eye sees, and find where it shows each vertex by them.
+    fn find(
+        &self,
+        frame: &mut Frame,
+        scene: &GpuScene,
+        to: (&CameraUniform, &ReflectionRecord),
+        mirror: &Mirror,
+        found: (&Source, &Buffer),
+    ) -> Result<()> {
+        let points = scene.scene.closed_points_of(scene.moment(), mirror.object);
+        let bins = self.bins.cubes(&points, mirror);
+        self.bins.trace(frame, scene, to.0, (&bins, &points))?;
+        self.bins.list(frame, &bins, &self.bins.rays, to.1)?;
+        self.project(frame, scene, to, &bins, found)
+    }
+}
+
+/// How vertices are looked up.
+fn look_up_defines(setup: &Setup) -> Vec<(&'static str, u32)> {
+    let mut defines = setup.mode.defines();
+    if setup.values.is("lookup", "brute-force") {
+        defines.push(("BRUTE_FORCE", 1));
+    }
+    defines
 }
 
 impl ReflectionMethod for EyeNode {
@@ -108,7 +148,10 @@ impl ReflectionMethod for EyeNode {
             let bytes = size_of::<Corner>() as u64 * u64::from(source.count.max(1));
             self.state = Some((source, Buffer::storage(&device, "projected corners", bytes)?));
         }
-        Ok(())
+        match &mut self.further {
+            Some(further) => further.prepare(frame, scene),
+            None => Ok(()),
+        }
     }
 
     fn reflect(
@@ -129,11 +172,14 @@ impl ReflectionMethod for EyeNode {
         let record = &*record;
         for &object in view.reflectors {
             let mirror = Mirror { object, lobe: view.lobe };
-            let bins = self.bins.build(frame, scene, &view.camera, &mirror, record)?;
             let drawn = (source, corners);
-            self.project(frame, scene, (&view.camera, record), &bins, drawn)?;
+            self.find(frame, scene, (&view.camera, record), &mirror, drawn)?;
             let name = "reflection-morphing";
             drawing.draw(frame, scene, name, (view, record), object, drawn)?;
+            if let (Lobe::Reflected, Some(further)) = (view.lobe, &self.further) {
+                let to = Drawing { view, record, source, corners };
+                further.run(frame, scene, &self.bins, to, Trace::of(&scene.scene, object))?;
+            }
         }
         Ok(())
     }

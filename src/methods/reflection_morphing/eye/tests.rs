@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 
+use super::super::ray_map::{self, RayMapper};
 use super::*;
+use crate::geometry::Ray;
 use crate::geometry::alhazen::reflected_point;
 use crate::geometry::shapes::sphere;
 use crate::gpu::Device;
@@ -40,44 +42,57 @@ impl Bench {
             size: VIEW,
             reflectors: &reflectors,
         };
-        let extent = super::super::ray_map::extent(&scene.scene);
+        let extent = ray_map::extent(&scene.scene);
         let node = EyeNode::new(&setup, extent).unwrap();
         let record = ReflectionRecord::new(&device, VIEW, RecordMode::Full, 1).unwrap();
         Bench { node, record, scene, device }
     }
 
-    /// Where a reflector shows each vertex, and the counters.
-    fn run(&mut self, moment: &Moment, object: ObjectId) -> (Vec<Corner>, Vec<u32>) {
+    /// Where a chain of reflectors shows each vertex.
+    fn run(&mut self, moment: &Moment, chain: &[ObjectId]) -> Vec<Corner> {
         let mut frame = Frame::new(&self.device).unwrap();
         frame.begin().unwrap();
         self.scene.pose(&mut frame, moment).unwrap();
         self.record.clear(&mut frame).unwrap();
         let want =
-            Want { changed: Default::default(), eyes: [Vec3::ZERO; 2], reflectors: &[object] };
+            Want { changed: Default::default(), eyes: [Vec3::ZERO; 2], reflectors: &chain[..1] };
         self.node.prepare(&mut frame, &self.scene, &want).unwrap();
         let Bench { scene, node, record, .. } = self;
         let (source, corners) = node.state.as_ref().unwrap();
         source.pose(&mut frame, scene, "test").unwrap();
         let camera = CameraUniform::new(&moment.camera, VIEW);
-        let mirror = Mirror { object, lobe: Lobe::Reflected };
-        let bins = node.bins.build(&mut frame, scene, &camera, &mirror, record).unwrap();
-        node.project(&mut frame, scene, (&camera, record), &bins, (source, corners)).unwrap();
+        let (seen, found) = ((&camera, &*record), (source, corners));
+        let mirror = |object| Mirror { object, lobe: Lobe::Reflected };
+        node.find(&mut frame, scene, seen, &mirror(chain[0]), found).unwrap();
+        let mut trace = Trace::of(&scene.scene, chain[0]);
+        for &object in &chain[1..] {
+            let further = node.further.as_ref().unwrap();
+            further.follow(&mut frame, scene, &node.bins, record, trace).unwrap();
+            trace = trace.on(&scene.scene, object);
+            let cubes = node.bins.cubes(&scene.scene.points_of(moment, object), &mirror(object));
+            let bins = (&node.bins, &cubes);
+            further.find(&mut frame, scene, bins, seen, trace, found).unwrap();
+        }
         frame.submit().unwrap();
-        (corners.read().unwrap(), record.counters(0).unwrap())
+        corners.read().unwrap()
     }
 }
 
 /// Two bundles with two rays in common give points between these by no more apart, metres.
 const ROUNDING: f32 = 1e-4;
 
-/// Vertices shown by cells' bundles and by all bundles of the same rays: how many by any, by one of both alone, and
-/// in different places.
-fn compared(name: &str, case: &str, at: u32) -> [usize; 3] {
+fn shown(corner: &Corner) -> bool {
+    corner.found >> 28 == SHOWN
+}
+
+/// Vertices shown over so many mirrors by cells' bundles and by all bundles of the same rays: how many by any, by one
+/// of both alone, and in different places.
+fn compared(name: &str, case: &str, at: u32, order: usize) -> [usize; 3] {
     let scene = scene::load(name).unwrap();
-    let (mirror, moment) = (scene.reflectors()[0], scene.at(at));
-    let [cells, all] = ["", ",lookup=brute-force"]
-        .map(|how| Bench::new(scene.clone(), &format!("{case}{how}")).run(&moment, mirror).0);
-    let shown = |corner: &Corner| corner.found >> 28 == SHOWN;
+    let (mirrors, moment) = (scene.reflectors(), scene.at(at));
+    let [cells, all] = ["", ",lookup=brute-force"].map(|how| {
+        Bench::new(scene.clone(), &format!("{case}{how}")).run(&moment, &mirrors[..order])
+    });
     let mut counts = [0; 3];
     for (a, b) in cells.iter().zip(&all) {
         counts[0] += usize::from(shown(a) || shown(b));
@@ -98,7 +113,7 @@ fn cells_lose_no_bundle() {
         ("two-spheres", 0, 1.0, 64),
     ] {
         let case = format!("reflection-morphing:nodes=eye,subdivide={edge},map={map}");
-        let [shown, lost, apart] = compared(name, &case, at);
+        let [shown, lost, apart] = compared(name, &case, at, 1);
         assert!(shown > 1000, "{name}: {shown} vertices");
         assert_eq!([lost, apart], [0, 0], "{name}: of {shown} vertices");
         total += shown;
@@ -107,10 +122,53 @@ fn cells_lose_no_bundle() {
 }
 
 #[test]
+fn cells_lose_no_bundle_of_rays_that_went_on() {
+    let case = "reflection-morphing:nodes=eye,bounces=2,subdivide=1,map=64";
+    let [shown, lost, apart] = compared("two-spheres", case, 0, 2);
+    assert!(shown > 1000, "{shown} vertices");
+    assert_eq!([lost, apart], [0, 0], "of {shown} vertices");
+}
+
+/// Of the vertices that a chain of mirrors shows: how many, and the median and the 95th percentile of how far a ray
+/// traced from the eye to the image passes by the vertex in the end, as a share of the metres it has come.
+fn passed_by(chain: &[usize], map: u32) -> (usize, [f32; 2]) {
+    let scene = scene::load("two-spheres").unwrap();
+    let (mirrors, moment) = (scene.reflectors(), scene.at(0));
+    let chain: Vec<ObjectId> = chain.iter().map(|&rank| mirrors[rank]).collect();
+    let case = format!("reflection-morphing:nodes=eye,bounces=3,subdivide=1,map={map}");
+    let corners = Bench::new(scene.clone(), &case).run(&moment, &chain);
+    let packed = chain[1..].iter().fold(Trace::of(&scene, chain[0]), |t, &m| t.on(&scene, m));
+    let (mapper, eye) = (RayMapper::new(&scene, &moment, false), moment.camera.eye);
+    let traced = corners.iter().filter(|corner| shown(corner)).filter_map(|corner| {
+        let image = Vec3::from(corner.image);
+        let ray = Ray { origin: eye, direction: (image - eye).normalize() };
+        let segment = mapper.chain(&ray, chain.len() as u32).pop()?;
+        // Rays at the eye do not end at other mirrors.
+        let towards = Vec3::from(corner.position) - segment.start;
+        let missed = towards.reject_from((segment.end - segment.start).normalize()).length();
+        // At its rim a mirror's facets and those of its image are not the same.
+        (segment.trace == packed.packed).then(|| missed / eye.distance(image))
+    });
+    let mut missed: Vec<f32> = traced.collect();
+    missed.sort_by(f32::total_cmp);
+    let at = |share: usize| missed[missed.len() * share / 100];
+    (missed.len(), [at(50), at(95)])
+}
+
+#[test]
+fn rays_traced_to_images_pass_by_the_vertices() {
+    for (chain, most) in [(&[0][..], 3e-5), (&[0, 1], 5e-4), (&[0, 1, 0], 5e-3)] {
+        let (count, missed) = passed_by(chain, 256);
+        assert!(count > 1000, "{chain:?}: {count} vertices");
+        assert!(missed[0] < most, "{chain:?}: {missed:?} of {count} vertices");
+    }
+}
+
+#[test]
 fn hollow_mirrors_lose_none_either() {
     // Where several bundles hold a vertex, a walk may end in another one than the shortest path's.
     let case = "reflection-morphing:nodes=eye,subdivide=0.5,map=64";
-    let [shown, lost, apart] = compared("columns-wobble", case, 7);
+    let [shown, lost, apart] = compared("columns-wobble", case, 7, 1);
     assert!(shown > 1000, "{shown} vertices");
     assert_eq!(lost, 0, "of {shown} vertices");
     assert!(apart * 100 < shown, "{apart} of {shown} vertices");
@@ -127,10 +185,10 @@ fn bundles_are_as_exact_as_the_square_of_their_width() {
     let camera = CameraUniform::new(&moment.camera, VIEW);
     let middle = [64, 128, 256].map(|map| {
         let case = format!("reflection-morphing:nodes=eye,subdivide=0.5,map={map}");
-        let (corners, _) = Bench::new(scene.clone(), &case).run(&moment, mirror);
+        let corners = Bench::new(scene.clone(), &case).run(&moment, &[mirror]);
         let mut errors: Vec<f32> = corners
             .iter()
-            .filter(|corner| corner.found >> 28 == SHOWN)
+            .filter(|corner| shown(corner))
             .filter_map(|corner| {
                 let [eye, v] = [eye, corner.position.into()].map(|p: Vec3| (p - centre).as_dvec3());
                 let root: DVec3 = reflected_point(DVec3::ZERO, 1.0, eye, v)?;
