@@ -46,7 +46,7 @@ def draw(figure):
     def row(one):
         tree, counters = dumped(one.run), one.run.row["counters"]
         lost = 100 * (1 - one.valid[exact.within].mean())
-        return [tree.bytes / 1e6, counters["rays"] / counters["look-ups"], int(tree.lists.max()), lost, error(one)]
+        return [tree.bytes / 1e6, counters["rays"] / counters["look-ups"], tree.largest, lost, error(one)]
 
     errors = {name: [error(run(f"cell={cell},point={rule}")) for cell in CELLS] for name, rule in RULES.items()}
     maps = np.array([row(run(f"map={size}")) for size in MAPS])

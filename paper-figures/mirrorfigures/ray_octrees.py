@@ -24,6 +24,20 @@ class Octree:
     lists: np.ndarray
     """Rays in each leaf."""
 
+    @property
+    def entries(self) -> int:
+        """Rays in all leaves; one that crosses ten counts ten times."""
+        return int(self.lists.sum())
+
+    @property
+    def mean(self) -> float:
+        """Rays a leaf, of those that hold any."""
+        return float(self.lists[self.lists > 0].mean())
+
+    @property
+    def largest(self) -> int:
+        return int(self.lists.max())
+
 
 def dumped(run: Run) -> Octree:
     """That of a run told to dump `BUFFERS`."""

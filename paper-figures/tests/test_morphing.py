@@ -1,8 +1,9 @@
-"""The sampling cell and the generalised camera of reflection morphing's diagrams."""
+"""The sampling cell, the octrees and the generalised camera of reflection morphing's figures."""
 
 import numpy as np
 import pytest
 
+from mirrorfigures import render
 from mirrorfigures.morphing import (
     Ray,
     distance,
@@ -11,6 +12,7 @@ from mirrorfigures.morphing import (
     nearest_ray,
     weights,
 )
+from mirrorfigures.ray_octrees import BUFFERS, Octree, dumped
 
 EYE = np.array([0.6, 1.7, -0.2])
 
@@ -41,3 +43,15 @@ def test_the_nearest_ray_is_one_of_its_trace():
     assert nearest_ray([along_x, along_y], (1,), np.array([1.0, 0, 0])) is along_y
     assert distance(along_x, np.array([3.0, 0, 0])) == pytest.approx(1.0)
     assert distance(along_x, np.array([1.0, 0, 0.5])) == pytest.approx(0.5)
+
+
+def test_an_octree_is_as_large_as_its_leaves_say(fake):
+    tree = dumped(render("columns", "reflection-morphing", size="32x24", dump=BUFFERS))
+    # Eight leaves of one ray each; arrays of 9, 9, 8 and 32 words.
+    assert (tree.rays, tree.entries, tree.mean, tree.largest) == (4, 8, 1.0, 1)
+    assert tree.bytes == 4 * (9 + 9 + 8 + 32)
+
+
+def test_the_mean_is_of_leaves_that_hold_rays():
+    tree = Octree(bytes=0, rays=5, lists=np.array([0, 2, 0, 4]))
+    assert (tree.entries, tree.mean, tree.largest) == (6, 3.0, 4)
