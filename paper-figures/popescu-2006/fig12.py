@@ -11,7 +11,7 @@ a ray and antialiasing (slide 35).
 from mirrorfigures import main
 from mirrorfigures.panels import revision
 
-CASES = "depth-impostors", "depth-impostors@revised:step_deg=10"
+CASES = "depth-impostors", "depth-impostors@revised"
 
 
 def draw(figure):

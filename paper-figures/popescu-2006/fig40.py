@@ -1,8 +1,8 @@
 """Popescu et al. 2006, slides 40 to 47: results before a mirror of every curvature.
 
 To be seen: A statue before a mirror knot, by depth images as published, ray traced, and as revised.
-Most of what is wrong either way is the knot that the knot should mirror, for which there is no
-impostor. Published, surfaces go on across silhouettes: what passes behind the statue is caught by it, and colours
+Published, the knot does not mirror itself, which is most of what is wrong; revised, depth images of its own with
+normals let it. Published, surfaces go on across silhouettes: what passes behind the statue is caught by it, and colours
 trail from its outline. Revised, rays pass there.
 
 Claim: "Results: depth image impostors"; an impostor has to provide fast construction, fast intersection with
@@ -12,7 +12,7 @@ a ray and antialiasing (slide 35).
 from mirrorfigures import main
 from mirrorfigures.panels import revision
 
-CASES = "depth-impostors", "depth-impostors@revised:step_deg=10"
+CASES = "depth-impostors", "depth-impostors@revised"
 
 
 def draw(figure):

@@ -12,12 +12,16 @@ struct Impostors {
     segments: u32,
     // Depth images.
     layers: u32,
+    // The first of the reflector itself; they are the last.
+    own: u32,
+    // Most reflections in one mirror, at least 1.
+    bounces: u32,
 }
 @group(0) @binding(0) var<storage, read> impostors: Impostors;
 // As `heights.wgsl` and `simplify.wgsl` leave them.
-@group(0) @binding(1) var quads: texture_2d_array<u32>;
-@group(0) @binding(2) var<storage, read> counts: array<u32>;
-@group(0) @binding(3) var<storage, read> segments: array<vec2<u32>>;
+@group(0) @binding(17) var quads: texture_2d_array<u32>;
+@group(0) @binding(18) var<storage, read> counts: array<u32>;
+@group(0) @binding(19) var<storage, read> segments: array<vec2<u32>>;
 
 const PI: f32 = 3.14159265358979;
 
@@ -51,6 +55,45 @@ fn nearest_height(layer: u32, place: vec2<f32>) -> f32 {
     }
     return unpack2x16unorm(textureLoad(quads, texel, layer, 0).x).x;
 }
+
+#ifdef FINISH
+// Texels to either side of a row's hit between which the image is looked at.
+const REACH: f32 = 1.5;
+
+// Between four texels of one surface, 0 where they are not.
+fn height_between(layer: u32, place: vec2<f32>, jump: f32) -> f32 {
+    let low = floor(place - 0.5);
+    if any(low < vec2(0.0)) || any(low >= vec2(f32(impostors.size) - 1.0)) {
+        return 0.0;
+    }
+    texel_reads += 1u;
+    let part = place - 0.5 - low;
+    let quad = textureLoad(quads, vec2<i32>(low), layer, 0);
+    let top = unpack2x16unorm(quad.x);
+    let bottom = unpack2x16unorm(quad.y);
+    let least = min(min(top.x, top.y), min(bottom.x, bottom.y));
+    let most = max(max(top.x, top.y), max(bottom.x, bottom.y));
+    let pair = mix(top, bottom, part.y);
+    return select(0.0, mix(pair.x, pair.y, part.x), least > 0.0 && most - least <= jump);
+}
+
+// The share of a line where it meets the image's own surface beside a row's hit; that one's where it does not.
+fn finished(line: ImageLine, layer: u32, jump: f32, share: f32) -> f32 {
+    let length = distance(line.start.xy, line.end.xy);
+    let ends = clamp(share + vec2(-REACH, REACH) / length, vec2(0.0), vec2(1.0));
+    let before = mix(line.start, line.end, ends.x);
+    let after = mix(line.start, line.end, ends.y);
+    let surface = vec2(
+        height_between(layer, before.xy, jump),
+        height_between(layer, after.xy, jump),
+    );
+    let over = vec2(before.z, after.z) - surface;
+    let one = min(surface.x, surface.y) > 0.0 && abs(surface.y - surface.x) <= 2.0 * REACH * jump;
+    let crosses = over.x >= 0.0 && over.y < 0.0;
+    let met = mix(ends.x, ends.y, over.x / (over.x - over.y));
+    return select(share, met, one && crosses);
+}
+#endif
 
 // Of the jump that is a silhouette: no farther behind one than this is its rim, which a surface goes on to
 // bend round.
@@ -256,5 +299,13 @@ fn search_rows(line: ImageLine, layer: u32, jump: f32) -> Found {
     found.behind = hit.behind;
     found.place = rotated(vec2(hit.x, y), cosine, -sine);
     found.height = mix(height.x, height.y, (hit.x - start.x) / (end.x - start.x));
+#ifdef FINISH
+    if hit.hit {
+        let share = finished(line, layer, jump, (hit.x - start.x) / (end.x - start.x));
+        let met = mix(line.start, line.end, share);
+        found.place = met.xy;
+        found.height = met.z;
+    }
+#endif
     return found;
 }

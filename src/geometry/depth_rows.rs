@@ -18,7 +18,7 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 pub use march::{Marched, march};
-pub use search::{Found, ImageLine, RowHit, RowLine, Rule, degenerate, search};
+pub use search::{Found, ImageLine, RowHit, RowLine, Rule, degenerate, finish, search};
 pub use simplify::simplify;
 pub use sweep::sweep;
 
@@ -92,9 +92,17 @@ impl Heights<'_> {
 
     /// Between four texels of one surface; that of the nearest at a silhouette.
     pub fn at(&self, place: Vec2, jump: f32) -> f32 {
+        match self.between(place, jump) {
+            0.0 => self.nearest(place),
+            height => height,
+        }
+    }
+
+    /// Between four texels of one surface, 0 where they are not.
+    pub fn between(&self, place: Vec2, jump: f32) -> f32 {
         let low = (place - 0.5).floor();
         if low.min_element() < 0.0 || low.max_element() >= self.size as f32 - 1.0 {
-            return self.nearest(place);
+            return 0.0;
         }
         let part = place - 0.5 - low;
         let corner = (low.y as u32 * self.size + low.x as u32) as usize;
@@ -103,8 +111,7 @@ impl Heights<'_> {
         let [c, d] = [self.texels[below], self.texels[below + 1]];
         let (least, most) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
         if least == 0.0 || most - least > jump {
-            let (top, bottom) = if part.x < 0.5 { (a, c) } else { (b, d) };
-            return if part.y < 0.5 { top } else { bottom };
+            return 0.0;
         }
         let (top, bottom) = (a + part.x * (b - a), c + part.x * (d - c));
         top + part.y * (bottom - top)

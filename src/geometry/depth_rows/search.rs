@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
-use super::{DepthRows, Packed, RIM, RowShape, Segment};
+use super::{DepthRows, Heights, Packed, RIM, RowShape, Segment};
 
 /// The part of a ray that a depth image can show: where it starts and ends, in texels and height. Between
 /// them it is straight.
@@ -110,6 +110,23 @@ pub fn search(rows: &DepthRows, line: &ImageLine, rule: Rule) -> Found {
         found.place = Some(shape.rotated(Vec2::new(x, y), -angle));
     }
     found
+}
+
+/// Texels to either side of a row's hit between which the image is looked at.
+const REACH: f32 = 1.5;
+
+/// Where a line meets the image's own surface beside the share at which it hit a row; that share where it does not.
+pub fn finish(heights: Heights, line: &ImageLine, jump: f32, share: f32) -> f32 {
+    let reach = REACH / (line.end - line.start).xy().length();
+    let ends = [share - reach, share + reach].map(|share| share.clamp(0.0, 1.0));
+    let surface = ends.map(|share| heights.between(line.at(share).xy(), jump));
+    let [before, after] = [0, 1].map(|i| line.at(ends[i]).z - surface[i]);
+    let one = surface.iter().all(|&height| height > 0.0)
+        && (surface[1] - surface[0]).abs() <= 2.0 * REACH * jump;
+    if !one || before < 0.0 || after >= 0.0 {
+        return share;
+    }
+    ends[0] + (ends[1] - ends[0]) * before / (before - after)
 }
 
 /// The segments of the row at y of a map, where it has any.

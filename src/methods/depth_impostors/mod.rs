@@ -9,14 +9,16 @@
 //! `@published` takes the row through the middle of the ray's part in the image, keeps the image that the
 //! reflector saw first, and lets surfaces go on across silhouettes. `@revised` looks again in the row that
 //! the ray is in where the first was hit, which ends most of what slide 46 shows; lets rays pass behind
-//! silhouettes, and flags those that do; has a second image of each object from behind; and builds on the
-//! device, so that images can follow what moves.
+//! silhouettes, and flags those that do; has a second image of each object from behind; builds on the
+//! device, so that images can follow what moves; and lets a mirror see itself, in depth images of its own whose
+//! stored normals send rays on ("self-reflections", slide 50).
 //!
 //! Choices the slides leave to us: what a depth is (such that lines stay straight), the rule of simplifying
 //! (the worst of a row's pieces split at once), the ray's middle as where a row is chosen, what is a
 //! silhouette (a fall ten times as deep as wide), and what has an impostor: whatever reflects nothing, those
 //! that look largest from a reflector first (`objects`). What is flat, floors and walls, has one image along
-//! its thinnest side, under parallel rays.
+//! its thinnest side, under parallel rays. What the scene calls its backdrop has none: a map taken from the mirror's middle
+//! shows it, as it does for billboards.
 
 pub mod build;
 mod params;
@@ -30,14 +32,15 @@ use glam::Vec3;
 use crate::error::{Error, Result};
 use crate::geometry::depth_rows::{DepthRows, Heights, Limits, RowShape, simplify};
 use crate::gpu::{Device, Frame};
-use crate::scene::{Moment, ObjectId};
+use crate::scene::{Moment, ObjectId, Scene};
 use crate::stages::{
-    GpuScene, PixelPass, PortraitStage, PortraitView, Portraits, ReflectionRecord, Sight, View,
+    Capture, CaptureStage, GpuScene, PixelPass, PortraitStage, PortraitView, Portraits,
+    ReflectionRecord, Sight, View,
 };
 
 use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
 use build::{RowBuffers, RowBuilder};
-use sitter::Sitter;
+use sitter::{Most, Sitter};
 
 pub const INFO: MethodInfo = MethodInfo {
     id: "depth-impostors",
@@ -49,8 +52,8 @@ pub const INFO: MethodInfo = MethodInfo {
     refracts: true,
     variants: &["published", "revised"],
     params: params::PARAMS,
-    limits: "what no image of an object shows is not there; one bounce; objects beyond `objects`, and other \
-             reflectors, show the environment",
+    limits: "what no image of an object shows is not there; more than one bounce only within one mirror (`own`); \
+             objects beyond `objects`, and other reflectors, show what is far away",
     passes: &[
         "depth-impostors/portrait",
         "depth-impostors/heights",
@@ -59,15 +62,21 @@ pub const INFO: MethodInfo = MethodInfo {
         "depth-impostors/rotate",
         "depth-impostors/simplify",
         "depth-impostors/portrait-light",
+        "depth-impostors/capture-background",
+        "depth-impostors/capture",
         "footprint/clear-list",
         "footprint/list",
         "depth-impostors/reflect",
     ],
-    counters: &["rays", "degenerate", "rows", "segments", "texels"],
+    counters: &["rays", "degenerate", "rows", "segments", "texels", "self_met"],
     new: Some(new),
 };
 
 const NAME: &str = "depth-impostors";
+/// Texels along a face's side of the map that shows a backdrop.
+const MAP: u32 = 512;
+/// Sides of images where no size is forced.
+const SIZES: [u32; 6] = [512, 384, 256, 192, 128, 64];
 
 /// WGSL `Impostors` of `shaders/depth_impostors/rows.wgsl`.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -77,6 +86,8 @@ struct Impostors {
     angles: u32,
     segments: u32,
     layers: u32,
+    own: u32,
+    bounces: u32,
 }
 
 /// Where rows are built.
@@ -91,6 +102,8 @@ enum Build {
 struct DepthImpostors {
     device: Arc<Device>,
     stage: PortraitStage,
+    /// Takes backdrops.
+    capture: CaptureStage,
     builder: RowBuilder,
     reflect: PixelPass,
     shape: RowShape,
@@ -98,8 +111,9 @@ struct DepthImpostors {
     sight: Sight,
     /// Images follow what moves.
     anew: bool,
-    views: u32,
-    most: usize,
+    most: Most,
+    /// Longest chain of reflections in one mirror.
+    bounces: u32,
     groups: Vec<Group>,
 }
 
@@ -109,20 +123,27 @@ struct Group {
     sitters: Vec<Sitter>,
     portraits: Portraits,
     rows: RowBuffers,
+    /// What is shown beyond the impostors; where the scene has a backdrop.
+    backdrop: Option<Backdrop>,
+}
+
+/// A map of all that has no impostor.
+struct Backdrop {
+    map: Capture,
+    /// Whether it has to be taken in every frame.
+    moves: bool,
+    left_out: Vec<ObjectId>,
 }
 
 fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     let (device, values) = (setup.device, setup.values);
-    let size = values.u32("size");
-    if !size.is_multiple_of(8) {
-        return refuse(format!("size={size}; valid: a multiple of 8"));
-    }
     let march = values.is("search", "march");
-    let angles = (180.0 / values.f32("step_deg")).round() as u32;
-    let shape = match march {
-        true => RowShape { size, angles: 1, segments: 1 },
-        false => RowShape { size, angles, segments: values.u32("segments") },
+    let most = Most {
+        objects: values.u32("objects") as usize,
+        views: values.u32("views"),
+        own: values.u32("own"),
     };
+    let shape = shape(setup, march, most)?;
     let build = match values.get("build") {
         _ if march => Build::None,
         "cpu" => Build::Processor,
@@ -137,6 +158,9 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         ("MARCH", march),
         ("SKINS", values.is("silhouettes", "skins")),
         ("RE_ANCHOR", values.is("re_anchor", "on")),
+        ("FINISH", values.is("re_anchor", "on") && values.is("finish", "image")),
+        ("OWN", most.own > 0),
+        ("BACKDROP", sitter::has_backdrop(&setup.scene.scene)),
     ] {
         if on {
             defines.push((define, 1));
@@ -146,16 +170,42 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     Ok(Box::new(DepthImpostors {
         device: device.clone(),
         stage: PortraitStage::new(device)?,
+        capture: CaptureStage::new(device)?,
         builder: RowBuilder::new(device, shape)?,
         reflect: setup.pixel_pass("depth_impostors/reflect.wgsl", &defines)?,
         shape,
         build,
         sight: if parallel { Sight::Parallel } else { Sight::Central },
         anew: values.is("view", "now"),
-        views: values.u32("views"),
-        most: values.u32("objects") as usize,
+        most,
+        bounces: if most.own > 0 { setup.scene.scene.bounces } else { 1 },
         groups: Vec::new(),
     }))
+}
+
+/// The rows' shape: of the size forced, or the largest whose rows fit one buffer for every group of reflectors.
+fn shape(setup: &Setup, march: bool, most: Most) -> Result<RowShape> {
+    let (scene, values) = (&setup.scene.scene, setup.values);
+    let angles = (180.0 / values.f32("step_deg")).round() as u32;
+    let of = |size: u32| match march {
+        true => RowShape { size, angles: 1, segments: 1 },
+        false => RowShape { size, angles, segments: values.u32("segments") },
+    };
+    if let Some(size) = values.forced_u32("size") {
+        if !size.is_multiple_of(8) {
+            return refuse(format!("size={size}; valid: a multiple of 8"));
+        }
+        return Ok(of(size));
+    }
+    let layers_for = |(_, reflectors): (String, Vec<ObjectId>)| {
+        sitter::sitters(scene, &reflectors, most).last().map_or(0, |sitter| sitter.layers.end)
+    };
+    let groups = scene.groups(&scene.reflectors());
+    let layers = groups.into_iter().map(layers_for).max().unwrap_or(0);
+    let limit = setup.device.storage_limit();
+    let fits = |shape: &RowShape| u64::from(layers) * shape.bytes() <= limit;
+    let mut shapes = SIZES.into_iter().map(of);
+    Ok(shapes.find(fits).unwrap_or_else(|| of(SIZES[SIZES.len() - 1])))
 }
 
 /// Whether anything that may have an impostor wobbles.
@@ -177,7 +227,10 @@ impl ReflectionMethod for DepthImpostors {
             }
         }
         let mut groups = std::mem::take(&mut self.groups);
-        let built = groups.iter_mut().try_for_each(|group| self.fill(frame, scene, group));
+        let built = groups.iter_mut().try_for_each(|group| {
+            self.fill(frame, scene, group)?;
+            self.take_backdrop(frame, scene, group, want.changed.shading)
+        });
         self.groups = groups;
         built
     }
@@ -189,10 +242,13 @@ impl ReflectionMethod for DepthImpostors {
         view: &View,
         record: &mut ReflectionRecord,
     ) -> Result<()> {
-        for Group { reflectors, sitters, portraits, rows } in &self.groups {
+        for Group { reflectors, sitters, portraits, rows, backdrop } in &self.groups {
             let RowShape { size, angles, segments } = self.shape;
             let layers = sitters.last().map_or(0, |sitter| sitter.layers.end);
-            let impostors = Impostors { size, angles, segments, layers };
+            let own = sitters.iter().find(|sitter| sitter.own);
+            let own = own.map_or(layers, |sitter| sitter.layers.start);
+            let bounces = self.bounces;
+            let impostors = Impostors { size, angles, segments, layers, own, bounces };
             let uniforms = frame.upload(&portraits.uniforms(scene))?;
             let limits: Vec<[f32; 2]> = (0..layers)
                 .filter_map(|layer| portraits.view(layer))
@@ -210,7 +266,16 @@ impl ReflectionMethod for DepthImpostors {
                     .optional()
                     .slice("portraits", uniforms)
                     .slice("layer_limits", limits);
-                portraits.bind(pass)
+                let pass = portraits.bind(pass);
+                match backdrop {
+                    None => pass,
+                    Some(Backdrop { map, .. }) => pass
+                        .sample("map_radiance", &map.radiance)
+                        .sample("map_point", &map.point)
+                        .optional()
+                        .sample("map_ids", &map.ids)
+                        .optional(),
+                }
             })?;
         }
         Ok(())
@@ -219,16 +284,36 @@ impl ReflectionMethod for DepthImpostors {
 
 impl DepthImpostors {
     fn group(&self, name: &str, scene: &GpuScene, reflectors: Vec<ObjectId>) -> Result<Group> {
-        let eye = scene.scene.centre_of(&scene.scene.at(0), &reflectors);
-        let sitters = sitter::sitters(&scene.scene, eye, self.most, self.views);
+        let sitters = sitter::sitters(&scene.scene, &reflectors, self.most);
         let layers = sitters.last().map_or(1, |sitter| sitter.layers.end);
+        let backdrop = sitter::has_backdrop(&scene.scene).then(|| {
+            let name = format!("backdrop of {name}");
+            Backdrop::new(&self.device, &name, &scene.scene, &sitters)
+        });
         let name = format!("depth impostors of {name}");
         Ok(Group {
+            backdrop: backdrop.transpose()?,
             reflectors,
             sitters,
             portraits: Portraits::new(&self.device, &name, self.shape.size, layers, 1)?,
             rows: RowBuffers::new(&self.device, self.shape, layers)?,
         })
+    }
+
+    /// Take the map of what is far away, where it is not as it was.
+    fn take_backdrop(
+        &self,
+        frame: &mut Frame,
+        scene: &GpuScene,
+        group: &mut Group,
+        shading: bool,
+    ) -> Result<()> {
+        let Some(Backdrop { map, moves, left_out }) = &mut group.backdrop else { return Ok(()) };
+        let centre = scene.scene.centre_of(scene.moment(), &group.reflectors);
+        if shading || *moves || map.centre != centre {
+            self.capture.capture(frame, scene, NAME, map, centre, left_out)?;
+        }
+        Ok(())
     }
 
     /// Take the images that are not as they should be, build their rows, and light them all.
@@ -313,6 +398,26 @@ impl DepthImpostors {
     }
 }
 
+impl Backdrop {
+    /// Of what neither has an impostor nor reflects.
+    fn new(
+        device: &Arc<Device>,
+        name: &str,
+        scene: &Scene,
+        sitters: &[Sitter],
+    ) -> Result<Backdrop> {
+        let has_impostor = |object| sitters.iter().any(|sitter| sitter.objects.contains(&object));
+        let objects = 0..scene.objects.len() as ObjectId;
+        let (left_out, shown): (Vec<_>, Vec<_>) =
+            objects.partition(|&object| scene.is_reflector(object) || has_impostor(object));
+        let moves = shown.into_iter().any(|object| scene.is_moving(object));
+        let mut map = Capture::new(device, name, MAP)?;
+        // Nowhere yet.
+        map.centre = Vec3::NAN;
+        Ok(Backdrop { map, moves, left_out })
+    }
+}
+
 /// An image to be taken.
 struct Stale {
     /// Its place in the group's list.
@@ -336,7 +441,9 @@ mod tests {
             size,
             angles,
             segments,
-            layers
+            layers,
+            own,
+            bounces
         );
     }
 }

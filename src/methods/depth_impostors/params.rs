@@ -6,10 +6,11 @@ use crate::methods::{Kind, Param};
 pub const PARAMS: &[Param] = &[
     Param {
         name: "size",
-        kind: Kind::Integer { min: 16, max: 2048 },
-        defaults: &["512"],
+        kind: Kind::IntegerOrAuto { min: 16, max: 2048 },
+        defaults: &["auto"],
         needs: None,
-        doc: "texels along a side of a depth image, a multiple of 8; also rows of a rotated map (unstated)",
+        doc: "texels along a side of a depth image, a multiple of 8; also rows of a rotated map (unstated); auto: 512, \
+              or fewer where the rows of all images are beyond one buffer",
     },
     Param {
         name: "search",
@@ -21,7 +22,7 @@ pub const PARAMS: &[Param] = &[
     Param {
         name: "step_deg",
         kind: Kind::Integer { min: 1, max: 90 },
-        defaults: &["10", "3"],
+        defaults: &["10"],
         needs: Some(("search", &["srdm"])),
         doc: "degrees between rotated maps, rounded to a whole share of 180 (slide 46: 20, 10, 3, 2)",
     },
@@ -45,6 +46,13 @@ pub const PARAMS: &[Param] = &[
         defaults: &["off", "on"],
         needs: Some(("search", &["srdm"])),
         doc: "search again in the row that the ray is in where the first was hit",
+    },
+    Param {
+        name: "finish",
+        kind: Kind::Choice(&["row", "image"]),
+        defaults: &["row", "image"],
+        needs: Some(("re_anchor", &["on"])),
+        doc: "the place is where the row was hit, or found from there between the image's own texels, by one secant",
     },
     Param {
         name: "silhouettes",
@@ -74,6 +82,14 @@ pub const PARAMS: &[Param] = &[
         defaults: &["1", "2"],
         needs: None,
         doc: "depth images of each object, from all round it; flat things have one (slide 49, occlusion-resistant)",
+    },
+    Param {
+        name: "own",
+        kind: Kind::Integer { min: 0, max: 6 },
+        defaults: &["0", "6"],
+        needs: None,
+        doc: "depth images of a mirror itself, in which its rays look for itself before they go on from there, to the \
+              scene's order (slide 50, future work); 0: rays pass through it",
     },
     Param {
         name: "objects",
