@@ -1,9 +1,10 @@
-//! Scenes that are hard on impostors, billboards and depth images alike: extreme magnification.
+//! What is asked of impostors, billboards and depth images alike: extreme magnification, antialiasing.
 
 mod gpu_support;
 
-use gpu_support::{Session, judged};
+use gpu_support::{Session, frame, judged};
 use mirrorbench::scene;
+use mirrorbench::truth::{Tracer, TruthOptions};
 
 /// Bad at a pixel in `dish-close` at a frame.
 fn bad(session: &Session, case: &str, at: u32) -> f64 {
@@ -26,5 +27,23 @@ fn magnification_brings_out_what_an_impostor_leaves_out() {
         }
         let [published, revised] = [published, revised].map(|case| bad(&session, case, 96));
         assert!(published > 0.3 && revised < 0.4 * published, "{revised} of {published}");
+    }
+}
+
+/// Slides 14 and 35: "antialiasing: YES". The checkers of `statue` are finer than pixels in so small a picture.
+#[test]
+fn mip_maps_alias_less() {
+    let (session, scene) = (Session::open(), scene::load("statue").unwrap());
+    let samples = TruthOptions { spp: 64, ..TruthOptions::default() };
+    let size = [96, 72];
+    let truth = Tracer::new(&scene, &scene.at(0), samples).frame(size);
+    for method in ["billboard-impostors", "depth-impostors@revised"] {
+        let [bilinear, mip] = ["bilinear", "mip"].map(|filter| {
+            let case = format!("{method}:size=256,filter={filter}");
+            let seen = frame(&session, &scene, &case, size, 0);
+            let squared = |i: usize| (seen.record.radiance[i] - truth.colour[i]).length_squared();
+            seen.reflector_pixels().into_iter().map(squared).sum::<f32>()
+        });
+        assert!(mip < 0.7 * bilinear, "{method}: {mip} of {bilinear}");
     }
 }

@@ -1,8 +1,8 @@
-// How much of a billboard a pixel shows: its ray beside those of the neighbouring pixels, followed
-// along with it (ray differentials, Igehy 1999, by differences).
+// How much of a billboard a pixel shows: its ray beside those of the neighbouring pixels, followed along with it.
 #define_import_path billboard_impostors::footprint
 
-#import bindings::view::{MirrorPoint, mirror_point_at, reflector_id}
+#import bindings::beside::pixel_beside
+#import bindings::view::MirrorPoint
 #import billboard_impostors::boards::{
     Meeting, Ray, board_surface, leaving_point, on_plane, outside_of, params, portraits,
 }
@@ -19,28 +19,11 @@ struct Neighbours {
 
 fn neighbours_of(at: MirrorPoint) -> Neighbours {
     var found: Neighbours;
-    found.rays[0] = neighbour(at, vec2(1, 0));
-    found.rays[1] = neighbour(at, vec2(0, 1));
+    let right = pixel_beside(at, vec2(1, 0));
+    let below = pixel_beside(at, vec2(0, 1));
+    found.rays[0] = Ray(right.position, right.outgoing);
+    found.rays[1] = Ray(below.position, below.outgoing);
     return found;
-}
-
-// Where both sides show another reflector the pixel's own: a footprint without width.
-fn neighbour(at: MirrorPoint, step: vec2<i32>) -> Ray {
-    let size = vec2<i32>(textureDimensions(reflector_id));
-    for (var side = 0; side < 2; side += 1) {
-        let pixel = vec2<i32>(at.pixel) + (1 - 2 * side) * step;
-        if any(pixel < vec2(0)) || any(pixel >= size) {
-            continue;
-        }
-        if textureLoad(reflector_id, vec2<u32>(pixel), 0).x != at.reflector {
-            continue;
-        }
-        let beside = mirror_point_at(vec2<u32>(pixel));
-        if beside.departs {
-            return Ray(beside.position, beside.outgoing);
-        }
-    }
-    return Ray(at.position, at.outgoing);
 }
 
 // Where a ray beside the one that met a billboard is on its picture, at the same height; where the other is, if behind

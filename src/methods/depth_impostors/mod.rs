@@ -107,6 +107,8 @@ struct DepthImpostors {
     builder: RowBuilder,
     reflect: PixelPass,
     shape: RowShape,
+    /// Mip levels of what images show.
+    levels: u32,
     build: Build,
     sight: Sight,
     /// Images follow what moves.
@@ -153,6 +155,7 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     if build == Build::Processor && wobbling && deforms(setup) {
         return refuse("build=cpu for what changes its shape; valid: build=gpu".to_owned());
     }
+    let filter = values.is("filter", "mip");
     let mut defines = Vec::new();
     for (define, on) in [
         ("MARCH", march),
@@ -160,6 +163,8 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         ("RE_ANCHOR", values.is("re_anchor", "on")),
         ("FINISH", values.is("re_anchor", "on") && values.is("finish", "image")),
         ("OWN", most.own > 0),
+        ("FILTER_MIP", filter),
+        ("NORMALS", most.own > 0 || filter),
         ("BACKDROP", sitter::has_backdrop(&setup.scene.scene)),
     ] {
         if on {
@@ -174,6 +179,7 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         builder: RowBuilder::new(device, shape)?,
         reflect: setup.pixel_pass("depth_impostors/reflect.wgsl", &defines)?,
         shape,
+        levels: if filter { shape.size.ilog2() + 1 } else { 1 },
         build,
         sight: if parallel { Sight::Parallel } else { Sight::Central },
         anew: values.is("view", "now"),
@@ -295,7 +301,7 @@ impl DepthImpostors {
             backdrop: backdrop.transpose()?,
             reflectors,
             sitters,
-            portraits: Portraits::new(&self.device, &name, self.shape.size, layers, 1)?,
+            portraits: Portraits::new(&self.device, &name, self.shape.size, layers, self.levels)?,
             rows: RowBuffers::new(&self.device, self.shape, layers)?,
         })
     }

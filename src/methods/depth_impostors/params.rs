@@ -62,6 +62,13 @@ pub const PARAMS: &[Param] = &[
         doc: "surfaces go on across silhouettes, or rays pass behind their rims, and are flagged",
     },
     Param {
+        name: "filter",
+        kind: Kind::Choice(&["bilinear", "mip"]),
+        defaults: &["mip"],
+        needs: None,
+        doc: "colour between texels, or also between mip levels by the pixel's footprint (slide 35, antialiasing)",
+    },
+    Param {
         name: "rays",
         kind: Kind::Choice(&["central", "parallel"]),
         defaults: &["central"],
