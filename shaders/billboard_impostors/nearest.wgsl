@@ -150,7 +150,7 @@ fn before_surface(track: Track, share: f32) -> f32 {
 
 // A ray that passes a silhouette is as far behind the surface as it falls there: in texels, more than this
 // is no meeting.
-const THICKEST: f32 = 2.0;
+const THICKEST: f32 = 1.0;
 // Texels a ray has to rise over the picture that also shows where it leaves, before it can meet it.
 const RISE: f32 = 4.0;
 const HALVINGS: u32 = 7u;
