@@ -22,7 +22,7 @@ CASES = {
     "and their own parts": f"{METHOD}@revised:far=direction",
     "revised: and the map's depths": f"{METHOD}@revised",
 }
-SCENES = {"four-teapots": "320x180", "table": "320x180", "pushing-it": "320x180", "hall-of-mirrors": "160x120"}
+SCENES = {"four-teapots": "240x135", "table": "240x135", "pushing-it": "240x135", "hall-of-mirrors": "128x96"}
 KINDS = {"other": "another mirror", "own": "the same, or its own part"}
 # Of the table's picture: left, top, right, bottom, as shares.
 CLOSE = (0.2, 0.25, 0.8, 0.72)
@@ -48,7 +48,7 @@ def draw(figure):
         axis.grid(color=GRID, lw=0.6, axis="y")
         axis.set_axisbelow(True)
     axes[0].set(ylabel="bad at 1 px, % of such pixels")
-    axes[0].legend(fontsize=7.5)
+    below.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=len(CASES), fontsize=7.5)
     figure.plot = plot
     figure.table("Bad at 1 px where the truth meets two mirrors", ["second mirror", "case", *SCENES], table)
     first, last = table[0], table[len(CASES) - 1]

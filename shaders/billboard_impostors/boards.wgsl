@@ -33,7 +33,8 @@ struct Sight {
 }
 // One an object.
 @group(0) @binding(2) var<storage, read> sights: array<Sight>;
-// A layer of the portraits, and two bits: the billboard is a flat thing itself; it is the reflector's own.
+// A layer of the portraits, and two bits: the billboard is a flat thing itself; it shows the very part
+// that rays leave.
 @group(0) @binding(3) var<storage, read> boards: array<u32>;
 const FLAT: u32 = 0x80000000u;
 const OWN: u32 = 0x40000000u;

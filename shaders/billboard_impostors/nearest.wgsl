@@ -150,7 +150,7 @@ fn before_surface(track: Track, share: f32) -> f32 {
 
 // A ray that passes a silhouette is as far behind the surface as it falls there: in texels, more than this
 // is no meeting.
-const THICKEST: f32 = 2.0;
+const THICKEST: f32 = 1.0;
 // Texels a ray has to rise over the picture that also shows where it leaves, before it can meet it.
 const RISE: f32 = 4.0;
 const HALVINGS: u32 = 7u;
@@ -166,22 +166,23 @@ fn on_relief(layer: u32, ray: Ray, own: bool) -> Meeting {
     let texels = ceil(length((track.end - track.start) * params.size));
     let steps = u32(clamp(texels, 1.0, f32(params.steps)));
     var before = track.from_front;
-    var last = 0.0;
-    for (var i = 0u; i <= steps; i += 1u) {
-        let share = f32(i) / f32(steps);
-        let gap = select(before_texel(track, share), before_surface(track, share), own);
-        if gap > 0.0 {
-            before = before || gap > rise;
-        } else {
-            if before {
-                let met = refined(track, last, share, texel);
-                if met.distance != NOWHERE {
-                    return met;
-                }
-            }
-            before = false;
+    var i = 0u;
+    // Halved outside the march: lanes that have found something wait for one another, not in every step.
+    while i <= steps {
+        var crosses = false;
+        while i <= steps && !crosses {
+            let gap = before_texel(track, f32(i) / f32(steps));
+            crosses = before && gap <= 0.0;
+            before = gap > 0.0 && (before || gap > rise);
+            i += 1u;
         }
-        last = share;
+        if crosses {
+            let last = f32(max(i, 2u) - 2u) / f32(steps);
+            let met = refined(track, last, f32(i - 1u) / f32(steps), texel);
+            if met.distance != NOWHERE {
+                return met;
+            }
+        }
     }
     return no_meeting();
 }

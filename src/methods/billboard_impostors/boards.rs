@@ -200,30 +200,32 @@ impl Boards {
                 .collect();
             let is_mirror = |index: &u32| self.things[self.layers[*index as usize].thing].mirrors;
             let (mirrors, diffuse): (Vec<u32>, Vec<u32>) = seen.into_iter().partition(is_mirror);
-            let sight = SightEntry {
-                first: boards.len() as u32,
-                diffuse: diffuse.len() as u32,
-                all: (diffuse.len() + mirrors.len()) as u32,
-                pad: 0,
-            };
             for &object in &self.things[viewer].objects {
-                sights[object as usize] = sight;
+                sights[object as usize] = SightEntry {
+                    first: boards.len() as u32,
+                    diffuse: diffuse.len() as u32,
+                    all: (diffuse.len() + mirrors.len()) as u32,
+                    pad: 0,
+                };
+                boards
+                    .extend(diffuse.iter().chain(&mirrors).map(|&index| self.word(index, object)));
             }
-            let word = |index: u32| {
-                let layer = &self.layers[index as usize];
-                match layer.faced {
-                    Faced::Own(_) => index | OWN_BIT,
-                    _ if self.things[layer.thing].flat => index | FLAT_BIT,
-                    _ => index,
-                }
-            };
-            boards.extend(diffuse.into_iter().chain(mirrors).map(word));
         }
         Ok(Tables {
             portraits: frame.upload(&self.portraits.uniforms(scene))?,
             sights: frame.upload(&sights)?,
             boards: frame.upload(&boards)?,
         })
+    }
+
+    /// What stands for a layer among the billboards that an object sees.
+    fn word(&self, index: u32, object: ObjectId) -> u32 {
+        let layer = &self.layers[index as usize];
+        match layer.faced {
+            Faced::Own(_) if layer.objects.contains(&object) => index | OWN_BIT,
+            _ if self.things[layer.thing].flat => index | FLAT_BIT,
+            _ => index,
+        }
     }
 
     fn is_seen_by(&self, layer: &Layer, viewer: usize) -> bool {
