@@ -330,9 +330,9 @@ fn a_mirror_sees_itself_in_its_own_images() {
 #[test]
 fn a_backdrop_is_behind_all_impostors() {
     let (session, scene) = (Session::open(), scene::load("table").unwrap());
-    let case = "depth-impostors@revised:size=128,step_deg=20,own=0";
-    let drawn = frame(&session, &scene, case, VIEW, 0);
-    let as_objects = frame(&session, &scene, &format!("{case},backdrop=images"), VIEW, 0);
+    let case = "depth-impostors@revised:size=128,step_deg=20,own=0,backdrop";
+    let drawn = frame(&session, &scene, &format!("{case}=map"), VIEW, 0);
+    let as_objects = frame(&session, &scene, &format!("{case}=images"), VIEW, 0);
     let exact = gpu_support::tracer(&scene, &scene.at(0)).frame(VIEW);
     let far = |record: &FrameRecord, i: usize| {
         let object = scene.objects.get(record.record.ids[i].object as usize);

@@ -18,7 +18,7 @@
 //! silhouette (a fall ten times as deep as wide), and what has an impostor: whatever reflects nothing, those
 //! that look largest from a reflector first (`objects`). What is flat, floors and walls, has one image along
 //! its thinnest side, under parallel rays. What the scene calls its backdrop is shown by a map taken from the mirror's
-//! middle, as billboards have it, unless `backdrop=images`.
+//! middle, as billboards have it; `@revised` takes depth images of it too.
 
 mod backdrop;
 pub mod build;

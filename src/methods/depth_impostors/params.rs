@@ -94,7 +94,7 @@ pub const PARAMS: &[Param] = &[
     Param {
         name: "backdrop",
         kind: Kind::Choice(&["map", "images"]),
-        defaults: &["map"],
+        defaults: &["map", "images"],
         needs: None,
         doc: "what the scene calls its backdrop is in an environment map, as for billboards, or has depth images like \
               all else",
