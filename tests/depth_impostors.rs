@@ -330,7 +330,9 @@ fn a_mirror_sees_itself_in_its_own_images() {
 #[test]
 fn a_backdrop_is_behind_all_impostors() {
     let (session, scene) = (Session::open(), scene::load("table").unwrap());
-    let drawn = frame(&session, &scene, "depth-impostors@revised:size=128,own=0", VIEW, 0);
+    let case = "depth-impostors@revised:size=128,step_deg=20,own=0,backdrop";
+    let drawn = frame(&session, &scene, &format!("{case}=map"), VIEW, 0);
+    let as_objects = frame(&session, &scene, &format!("{case}=images"), VIEW, 0);
     let exact = gpu_support::tracer(&scene, &scene.at(0)).frame(VIEW);
     let far = |record: &FrameRecord, i: usize| {
         let object = scene.objects.get(record.record.ids[i].object as usize);
@@ -345,6 +347,12 @@ fn a_backdrop_is_behind_all_impostors() {
     let near = pixels.iter().filter(|&&i| exact.record.ids[i].order() == 1 && !far(&exact, i));
     let hidden = near.clone().filter(|&&i| far(&drawn, i)).count();
     assert!(10 * hidden < near.count(), "{hidden} pixels show what is behind");
+    // Not far enough away: images of its own put it where it is.
+    let [mapped, imaged] = [&drawn, &as_objects].map(|drawn| {
+        let there = |i: usize| drawn.record.point[i].abs_diff_eq(exact.record.point[i], 0.02);
+        exact_far.iter().filter(|&&i| there(i)).count()
+    });
+    assert!(mapped < imaged, "{mapped} mapped, {imaged} in images");
 }
 
 #[test]

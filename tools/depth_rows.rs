@@ -48,9 +48,10 @@ fn errors(rows: &DepthRows, heights: Heights, limits: Limits) -> [f64; 2] {
         let mut largest = 0.0f32;
         for Segment { x, height } in kept {
             let slope = (height[1] - height[0]) / (x[1] - x[0]);
-            for i in x[0].floor() as usize..(x[1].ceil() as usize).min(samples.len()) {
-                let off = (height[0] + slope * (i as f32 + 0.5 - x[0]) - samples[i]).abs();
-                if samples[i] > 0.0 && x[0] <= i as f32 + 0.6 && i as f32 + 0.4 <= x[1] {
+            let (from, to) = (x[0].floor() as usize, x[1].ceil() as usize);
+            for (i, &sample) in samples.iter().enumerate().take(to).skip(from) {
+                let off = (height[0] + slope * (i as f32 + 0.5 - x[0]) - sample).abs();
+                if sample > 0.0 && x[0] <= i as f32 + 0.6 && i as f32 + 0.4 <= x[1] {
                     largest = largest.max(off);
                     sum += f64::from(off);
                     shown += 1;

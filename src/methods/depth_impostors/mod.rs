@@ -17,9 +17,10 @@
 //! (the worst of a row's pieces split at once), the ray's middle as where a row is chosen, what is a
 //! silhouette (a fall ten times as deep as wide), and what has an impostor: whatever reflects nothing, those
 //! that look largest from a reflector first (`objects`). What is flat, floors and walls, has one image along
-//! its thinnest side, under parallel rays. What the scene calls its backdrop has none: a map taken from the mirror's middle
-//! shows it, as it does for billboards.
+//! its thinnest side, under parallel rays. What the scene calls its backdrop is shown by a map taken from the mirror's
+//! middle, as billboards have it; `@revised` takes depth images of it too.
 
+mod backdrop;
 pub mod build;
 mod params;
 mod sitter;
@@ -32,13 +33,14 @@ use glam::Vec3;
 use crate::error::{Error, Result};
 use crate::geometry::depth_rows::{DepthRows, Heights, Limits, RowShape, simplify};
 use crate::gpu::{Device, Frame};
-use crate::scene::{Moment, ObjectId, Scene};
+use crate::scene::{Moment, ObjectId};
 use crate::stages::{
-    Capture, CaptureStage, GpuScene, PixelPass, PortraitStage, PortraitView, Portraits,
-    ReflectionRecord, Sight, View,
+    CaptureStage, GpuScene, PixelPass, PortraitStage, PortraitView, Portraits, ReflectionRecord,
+    Sight, View,
 };
 
 use super::{Changes, Family, MethodInfo, ReflectionMethod, Setup, Want};
+use backdrop::Backdrop;
 use build::{RowBuffers, RowBuilder};
 use sitter::{Most, Sitter};
 
@@ -73,8 +75,6 @@ pub const INFO: MethodInfo = MethodInfo {
 };
 
 const NAME: &str = "depth-impostors";
-/// Texels along a face's side of the map that shows a backdrop.
-const MAP: u32 = 512;
 /// Sides of images where no size is forced.
 const SIZES: [u32; 6] = [512, 384, 256, 192, 128, 64];
 
@@ -129,14 +129,6 @@ struct Group {
     backdrop: Option<Backdrop>,
 }
 
-/// A map of all that has no impostor.
-struct Backdrop {
-    map: Capture,
-    /// Whether it has to be taken in every frame.
-    moves: bool,
-    left_out: Vec<ObjectId>,
-}
-
 fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     let (device, values) = (setup.device, setup.values);
     let march = values.is("search", "march");
@@ -144,6 +136,7 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         objects: values.u32("objects") as usize,
         views: values.u32("views"),
         own: values.u32("own"),
+        mapped: values.is("backdrop", "map"),
     };
     let shape = shape(setup, march, most)?;
     let build = match values.get("build") {
@@ -165,7 +158,7 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         ("OWN", most.own > 0),
         ("FILTER_MIP", filter),
         ("NORMALS", most.own > 0 || filter),
-        ("BACKDROP", sitter::has_backdrop(&setup.scene.scene)),
+        ("BACKDROP", sitter::has_backdrop(&setup.scene.scene, most)),
     ] {
         if on {
             defines.push((define, 1));
@@ -235,7 +228,11 @@ impl ReflectionMethod for DepthImpostors {
         let mut groups = std::mem::take(&mut self.groups);
         let built = groups.iter_mut().try_for_each(|group| {
             self.fill(frame, scene, group)?;
-            self.take_backdrop(frame, scene, group, want.changed.shading)
+            let Group { reflectors, backdrop, .. } = group;
+            let taken = |backdrop: &mut Backdrop| {
+                backdrop.take(frame, scene, &self.capture, reflectors, want.changed.shading)
+            };
+            backdrop.as_mut().map_or(Ok(()), taken)
         });
         self.groups = groups;
         built
@@ -275,12 +272,7 @@ impl ReflectionMethod for DepthImpostors {
                 let pass = portraits.bind(pass);
                 match backdrop {
                     None => pass,
-                    Some(Backdrop { map, .. }) => pass
-                        .sample("map_radiance", &map.radiance)
-                        .sample("map_point", &map.point)
-                        .optional()
-                        .sample("map_ids", &map.ids)
-                        .optional(),
+                    Some(backdrop) => backdrop.bind(pass),
                 }
             })?;
         }
@@ -292,7 +284,7 @@ impl DepthImpostors {
     fn group(&self, name: &str, scene: &GpuScene, reflectors: Vec<ObjectId>) -> Result<Group> {
         let sitters = sitter::sitters(&scene.scene, &reflectors, self.most);
         let layers = sitters.last().map_or(1, |sitter| sitter.layers.end);
-        let backdrop = sitter::has_backdrop(&scene.scene).then(|| {
+        let backdrop = sitter::has_backdrop(&scene.scene, self.most).then(|| {
             let name = format!("backdrop of {name}");
             Backdrop::new(&self.device, &name, &scene.scene, &sitters)
         });
@@ -304,22 +296,6 @@ impl DepthImpostors {
             portraits: Portraits::new(&self.device, &name, self.shape.size, layers, self.levels)?,
             rows: RowBuffers::new(&self.device, self.shape, layers)?,
         })
-    }
-
-    /// Take the map of what is far away, where it is not as it was.
-    fn take_backdrop(
-        &self,
-        frame: &mut Frame,
-        scene: &GpuScene,
-        group: &mut Group,
-        shading: bool,
-    ) -> Result<()> {
-        let Some(Backdrop { map, moves, left_out }) = &mut group.backdrop else { return Ok(()) };
-        let centre = scene.scene.centre_of(scene.moment(), &group.reflectors);
-        if shading || *moves || map.centre != centre {
-            self.capture.capture(frame, scene, NAME, map, centre, left_out)?;
-        }
-        Ok(())
     }
 
     /// Take the images that are not as they should be, build their rows, and light them all.
@@ -401,26 +377,6 @@ impl DepthImpostors {
             group.rows.copy(frame, NAME, layer, &rows)?;
         }
         Ok(())
-    }
-}
-
-impl Backdrop {
-    /// Of what neither has an impostor nor reflects.
-    fn new(
-        device: &Arc<Device>,
-        name: &str,
-        scene: &Scene,
-        sitters: &[Sitter],
-    ) -> Result<Backdrop> {
-        let has_impostor = |object| sitters.iter().any(|sitter| sitter.objects.contains(&object));
-        let objects = 0..scene.objects.len() as ObjectId;
-        let (left_out, shown): (Vec<_>, Vec<_>) =
-            objects.partition(|&object| scene.is_reflector(object) || has_impostor(object));
-        let moves = shown.into_iter().any(|object| scene.is_moving(object));
-        let mut map = Capture::new(device, name, MAP)?;
-        // Nowhere yet.
-        map.centre = Vec3::NAN;
-        Ok(Backdrop { map, moves, left_out })
     }
 }
 

@@ -99,6 +99,14 @@ pub const PARAMS: &[Param] = &[
               scene's order (slide 50, future work); 0: rays pass through it",
     },
     Param {
+        name: "backdrop",
+        kind: Kind::Choice(&["map", "images"]),
+        defaults: &["map", "images"],
+        needs: None,
+        doc: "what the scene calls its backdrop is in an environment map, as for billboards, or has depth images like \
+              all else",
+    },
+    Param {
         name: "objects",
         kind: Kind::Integer { min: 1, max: 64 },
         defaults: &["16"],

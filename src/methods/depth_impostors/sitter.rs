@@ -38,6 +38,8 @@ pub struct Most {
     pub views: u32,
     /// Images of the reflector itself.
     pub own: u32,
+    /// What the scene calls its backdrop is in a map of what is far away, and not among the objects.
+    pub mapped: bool,
 }
 
 /// Whatever reflects nothing and is no backdrop, in groups that move as one, those first that look largest from the reflectors'
@@ -45,9 +47,10 @@ pub struct Most {
 pub fn sitters(scene: &Scene, reflectors: &[ObjectId], most: Most) -> Vec<Sitter> {
     let moment = scene.at(0);
     let eye = scene.centre_of(&moment, reflectors);
-    let is_backdrop = |o: ObjectId| scene.objects[o as usize].impostor == Impostor::Backdrop;
+    let is_far =
+        |o: ObjectId| most.mapped && scene.objects[o as usize].impostor == Impostor::Backdrop;
     let diffuse: Vec<ObjectId> = (0..scene.objects.len() as ObjectId)
-        .filter(|&o| !scene.is_reflector(o) && !is_backdrop(o))
+        .filter(|&o| !scene.is_reflector(o) && !is_far(o))
         .collect();
     let mut others = bodies(scene, &diffuse);
     let nearness = |objects: &Vec<ObjectId>| {
@@ -93,8 +96,8 @@ fn bodies(scene: &Scene, objects: &[ObjectId]) -> Vec<Vec<ObjectId>> {
 }
 
 /// Whether the scene has objects that are shown by a map of what is far away.
-pub fn has_backdrop(scene: &Scene) -> bool {
-    scene.objects.iter().any(|object| object.impostor == Impostor::Backdrop)
+pub fn has_backdrop(scene: &Scene, most: Most) -> bool {
+    most.mapped && scene.objects.iter().any(|object| object.impostor == Impostor::Backdrop)
 }
 
 fn is_flat(scene: &Scene, moment: &Moment, objects: &[ObjectId]) -> bool {
@@ -192,7 +195,7 @@ mod tests {
         let towards = Vec3::new(0.6, 0.0, 0.8);
         let statue = scene.objects.iter().position(|object| object.group == "statue").unwrap();
         scene.objects[statue].impostor = Impostor::Facing(towards);
-        let most = Most { objects: 16, views: 2, own: 6 };
+        let most = Most { objects: 16, views: 2, own: 6, mapped: true };
         let sitters = sitters(&scene, &scene.reflectors(), most);
         let of = |object: usize| {
             let has = |sitter: &&Sitter| sitter.objects.contains(&(object as ObjectId));
