@@ -31,10 +31,12 @@ NEARING = (2.0, 1.0, 0.5, 0.25, 0.1)
 # 1 / radius, per metre; the centre is behind the mirror above 0.
 CURVATURES = (-0.5, -0.4, -0.25, 0.0, 0.25, 0.5, 1.0)
 NEARED = {"hollow, radius 1 m": -1.0, "flat": 0.0, "convex, radius 1 m": 1.0}
+# Not filtered, as the truth's one ray a pixel is not.
 CASES = {
-    "billboard": "billboard-impostors",
-    "depth image": "depth-impostors:size=256",
-    "depth image, revised": "depth-impostors@revised:size=256",
+    "billboard": "billboard-impostors:filter=bilinear",
+    "billboard, revised": "billboard-impostors@revised:filter=bilinear",
+    "depth image": "depth-impostors:size=256,filter=bilinear",
+    "depth image, revised": "depth-impostors@revised:size=256,filter=bilinear",
 }
 def scene(curvature, away):
     """The statue, a mirror of that curvature, the eye so far from it."""
