@@ -15,7 +15,7 @@ use snapshot_support::{EDGE_SHARE, Picture, difference};
 const SIZE: [u32; 2] = [96, 64];
 
 /// Name, scene, case, frame.
-const SNAPSHOTS: [(&str, &str, &str, u32); 17] = [
+const SNAPSHOTS: [(&str, &str, &str, u32); 19] = [
     ("columns-environment-map", "columns", "environment-map", 40),
     ("patow-room-environment-map", "patow-room", "environment-map", 0),
     ("patow-room-index-surface", "patow-room", "environment-map:index=surface", 0),
@@ -27,6 +27,18 @@ const SNAPSHOTS: [(&str, &str, &str, u32); 17] = [
     ("lecture-planar-mirror", "lecture", "planar-mirror", 0),
     ("columns-distance-impostor", "columns", "distance-impostor@revised", 40),
     ("columns-reflection-morphing", "columns", "reflection-morphing:files=none", 40),
+    (
+        "columns-reflection-morphing-revised",
+        "columns",
+        "reflection-morphing@revised:files=none,map=64,subdivide=0.5",
+        40,
+    ),
+    (
+        "two-spheres-reflection-morphing-eye",
+        "two-spheres",
+        "reflection-morphing@revised:nodes=eye,map=128,subdivide=0.5,bounces=2",
+        40,
+    ),
     ("lecture-screen-space", "lecture", "screen-space", 0),
     ("columns-explosion-map", "columns", "explosion-map@revised", 40),
     ("statue-depth-impostors", "statue", "depth-impostors@revised:size=128,step_deg=10", 600),

@@ -128,10 +128,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         length = min(length + stride, sheaf.length);
         let after_low = sheaf.low + length * sheaf.low_slope - bins.centre;
         let after_high = sheaf.high + length * sheaf.high_slope - bins.centre;
-        let low = min(before_low, after_low);
-        let high = max(before_high, after_high);
+        // Nothing is looked for outside the scene's box.
+        let low = max(min(before_low, after_low), bins.low - bins.centre);
+        let high = min(max(before_high, after_high), bins.high - bins.centre);
         before_low = after_low;
         before_high = after_high;
+        if any(low > high) {
+            continue;
+        }
         let nearest = max(low, -high);
         let first = level_of(max(max(nearest.x, nearest.y), nearest.z));
         let end = level_of(max(farthest(low), farthest(high)));

@@ -61,9 +61,9 @@ const SHEAF: u32 = 4;
 /// WGSL `BLOCK`.
 const BLOCK: u32 = 1024;
 
-/// Entries that lists have room for, where the device allows it: twenty times as many a sheaf as were seen before a
+/// Entries that lists have room for, where the device allows it: forty times as many a sheaf as were seen before a
 /// sphere, as hollow mirrors have their rays cross; and so many at least, as few rays are wide apart.
-const ENTRIES_A_SHEAF: u64 = 1024;
+const ENTRIES_A_SHEAF: u64 = 2048;
 const LEAST_ENTRIES: u64 = 1 << 20;
 
 /// Pipelines and lists.
