@@ -148,31 +148,15 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
     if build == Build::Processor && wobbling && deforms(setup) {
         return refuse("build=cpu for what changes its shape; valid: build=gpu".to_owned());
     }
-    let filter = values.is("filter", "mip");
-    let mut defines = Vec::new();
-    for (define, on) in [
-        ("MARCH", march),
-        ("SKINS", values.is("silhouettes", "skins")),
-        ("RE_ANCHOR", values.is("re_anchor", "on")),
-        ("FINISH", values.is("re_anchor", "on") && values.is("finish", "image")),
-        ("OWN", most.own > 0),
-        ("FILTER_MIP", filter),
-        ("NORMALS", most.own > 0 || filter),
-        ("BACKDROP", sitter::has_backdrop(&setup.scene.scene, most)),
-    ] {
-        if on {
-            defines.push((define, 1));
-        }
-    }
     let parallel = values.is("rays", "parallel");
     Ok(Box::new(DepthImpostors {
         device: device.clone(),
         stage: PortraitStage::new(device)?,
         capture: CaptureStage::new(device)?,
         builder: RowBuilder::new(device, shape)?,
-        reflect: setup.pixel_pass("depth_impostors/reflect.wgsl", &defines)?,
+        reflect: setup.pixel_pass("depth_impostors/reflect.wgsl", &defines(setup, most))?,
         shape,
-        levels: if filter { shape.size.ilog2() + 1 } else { 1 },
+        levels: if values.is("filter", "mip") { shape.size.ilog2() + 1 } else { 1 },
         build,
         sight: if parallel { Sight::Parallel } else { Sight::Central },
         anew: values.is("view", "now"),
@@ -180,6 +164,25 @@ fn new(setup: &Setup) -> Result<Box<dyn ReflectionMethod>> {
         bounces: if most.own > 0 { setup.scene.scene.bounces } else { 1 },
         groups: Vec::new(),
     }))
+}
+
+/// What the shader that answers pixels is made with.
+fn defines(setup: &Setup, most: Most) -> Vec<(&'static str, u32)> {
+    let values = setup.values;
+    let (again, filter) = (values.is("re_anchor", "on"), values.is("filter", "mip"));
+    [
+        ("MARCH", values.is("search", "march")),
+        ("SKINS", values.is("silhouettes", "skins")),
+        ("RE_ANCHOR", again),
+        ("FINISH", again && values.is("finish", "image")),
+        ("OWN", most.own > 0),
+        ("FILTER_MIP", filter),
+        ("NORMALS", most.own > 0 || filter),
+        ("BACKDROP", sitter::has_backdrop(&setup.scene.scene, most)),
+    ]
+    .into_iter()
+    .filter_map(|(define, on)| on.then_some((define, 1)))
+    .collect()
 }
 
 /// The rows' shape: of the size forced, or the largest whose rows fit one buffer for every group of reflectors.
