@@ -26,6 +26,8 @@ def fake(tmp_path, monkeypatch):
     monkeypatch.setenv("MIRRORBENCH_FIGURES", str(tmp_path / "out"))
     monkeypatch.setenv("FAKE_MIRRORBENCH_LOG", str(log))
     monkeypatch.setenv("FAKE_MIRRORBENCH_SIZE", "160x90")
+    # Hundreds of short processes: starting threads for their small arrays costs more than it saves.
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "1")
     monkeypatch.setattr(paths, "SCENES", scenes)
     runs._ground.cache_clear()
     yield log
