@@ -1,9 +1,7 @@
 // Which billboard a ray meets first: as a quad, or as the surface whose depth is stored with its picture.
 #define_import_path billboard_impostors::nearest
 
-#import bindings::portrait::{
-    portrait_axes, portrait_clip, portrait_own_direction, portrait_own_position, portrait_place,
-}
+#import bindings::portrait::{portrait_place, portrait_ray}
 #import billboard_impostors::boards::{
     FLAT, LAYER, Meeting, NOWHERE, OWN, Ray, boards, no_meeting, on_plane, outside_of, params,
     portrait_albedo, portrait_point, portraits, sights, texel_of, texel_width,
@@ -73,44 +71,20 @@ struct Track {
     exists: bool,
 }
 
-// The range of a ray where a + t b >= 0 besides.
-fn kept(range: vec2<f32>, a: f32, b: f32) -> vec2<f32> {
-    if b > 0.0 {
-        return vec2(max(range.x, -a / b), range.y);
-    }
-    if b < 0.0 {
-        return vec2(range.x, min(range.y, -a / b));
-    }
-    return select(range, vec2(1.0, 0.0), a < 0.0);
-}
-
 fn track_of(layer: u32, ray: Ray) -> Track {
-    let portrait = portraits[layer];
-    let o = portrait_axes(portrait, portrait_own_position(portrait, ray.origin));
-    let own = portrait_own_direction(portrait, ray.direction);
-    let d = vec3(dot(own, portrait.right), dot(own, portrait.up), dot(own, portrait.towards));
-    let clip = portrait_clip(portrait, o);
-    let change = portrait_clip(portrait, o + d) - clip;
-    var range = vec2(0.0, NOWHERE);
-    range = kept(range, clip.w - clip.x, change.w - change.x);
-    range = kept(range, clip.w + clip.x, change.w + change.x);
-    range = kept(range, clip.w - clip.y, change.w - change.y);
-    range = kept(range, clip.w + clip.y, change.w + change.y);
-    range = kept(range, clip.z, change.z);
-    let before = range.x;
-    range = kept(range, clip.w - clip.z, change.w - change.z);
+    let there = portrait_ray(portraits[layer], ray.origin, ray.direction);
+    let first = there.clip + there.range.x * there.change;
+    let last = there.clip + there.range.y * there.change;
     var track: Track;
-    track.exists = range.x < range.y;
-    track.from_front = range.x > before;
-    let first = clip + range.x * change;
-    let last = clip + range.y * change;
+    track.exists = there.range.x < there.range.y;
+    track.from_front = there.from_front;
     track.layer = layer;
     track.start = 0.5 + 0.5 * first.xy / first.w;
     track.end = 0.5 + 0.5 * last.xy / last.w;
-    track.along = range;
+    track.along = there.range;
     track.w = vec2(first.w, last.w);
-    track.height = o.z;
-    track.climb = d.z;
+    track.height = there.height;
+    track.climb = there.climb;
     return track;
 }
 

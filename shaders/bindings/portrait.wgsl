@@ -68,3 +68,44 @@ fn portrait_clip(portrait: Portrait, q: vec3<f32>) -> vec4<f32> {
 fn portrait_place(portrait: Portrait, q: vec2<f32>) -> vec2<f32> {
     return vec2(0.5 + 0.5 * q.x / portrait.half_width, 0.5 - 0.5 * q.y / portrait.half_height);
 }
+
+// A ray in a picture's clip space: where it leaves, the change a metre, and the metres between which it is in what the
+// picture can show; none where the second is the less.
+struct PortraitRay {
+    clip: vec4<f32>,
+    change: vec4<f32>,
+    range: vec2<f32>,
+    // Over the plane where it leaves, and the change a metre.
+    height: f32,
+    climb: f32,
+    // It comes in by the side that faces the eye.
+    from_front: bool,
+}
+
+fn portrait_ray(portrait: Portrait, origin: vec3<f32>, direction: vec3<f32>) -> PortraitRay {
+    let o = portrait_axes(portrait, portrait_own_position(portrait, origin));
+    let own = portrait_own_direction(portrait, direction);
+    let d = vec3(dot(own, portrait.right), dot(own, portrait.up), dot(own, portrait.towards));
+    let clip = portrait_clip(portrait, o);
+    let change = portrait_clip(portrait, o + d) - clip;
+    var range = vec2(0.0, 1.0e30);
+    range = portrait_kept(range, clip.w - clip.x, change.w - change.x);
+    range = portrait_kept(range, clip.w + clip.x, change.w + change.x);
+    range = portrait_kept(range, clip.w - clip.y, change.w - change.y);
+    range = portrait_kept(range, clip.w + clip.y, change.w + change.y);
+    range = portrait_kept(range, clip.z, change.z);
+    let before = range.x;
+    range = portrait_kept(range, clip.w - clip.z, change.w - change.z);
+    return PortraitRay(clip, change, range, o.z, d.z, range.x > before);
+}
+
+// The range of a ray where a + t b >= 0 besides.
+fn portrait_kept(range: vec2<f32>, a: f32, b: f32) -> vec2<f32> {
+    if b > 0.0 {
+        return vec2(max(range.x, -a / b), range.y);
+    }
+    if b < 0.0 {
+        return vec2(range.x, min(range.y, -a / b));
+    }
+    return select(range, vec2(1.0, 0.0), a < 0.0);
+}

@@ -1,21 +1,8 @@
 // Rays in depth images: where a point or a ray is in one (Popescu et al. 2006, slide 36).
 #define_import_path depth_impostors::projection
 
-#import bindings::portrait::{
-    Portrait, portrait_axes, portrait_clip, portrait_own_direction, portrait_own_position,
-}
+#import bindings::portrait::{Portrait, portrait_ray}
 #import depth_impostors::rows::{ImageLine, impostors}
-
-// The share of a line, first and last, that satisfies a condition linear in it: a + t b >= 0.
-fn kept(range: vec2<f32>, a: f32, b: f32) -> vec2<f32> {
-    if b > 0.0 {
-        return vec2(max(range.x, -a / b), range.y);
-    }
-    if b < 0.0 {
-        return vec2(range.x, min(range.y, -a / b));
-    }
-    return select(range, vec2(1.0, 0.0), a < 0.0);
-}
 
 struct Projected {
     // Some of the ray is in the image.
@@ -29,25 +16,13 @@ fn in_image(clip: vec4<f32>) -> vec3<f32> {
 
 // The ray from `origin` along `direction`, world, in a layer's depth image.
 fn projected(portrait: Portrait, origin: vec3<f32>, direction: vec3<f32>) -> Projected {
-    let q = portrait_axes(portrait, portrait_own_position(portrait, origin));
-    let own = portrait_own_direction(portrait, direction);
-    let d = vec3(dot(own, portrait.right), dot(own, portrait.up), dot(own, portrait.towards));
-    // Linear in the distance along the ray.
-    let clip = portrait_clip(portrait, q);
-    let change = portrait_clip(portrait, q + d) - clip;
-    var range = vec2(0.0, 1.0e30);
-    range = kept(range, clip.w - clip.x, change.w - change.x);
-    range = kept(range, clip.w + clip.x, change.w + change.x);
-    range = kept(range, clip.w - clip.y, change.w - change.y);
-    range = kept(range, clip.w + clip.y, change.w + change.y);
-    range = kept(range, clip.w - clip.z, change.w - change.z);
-    range = kept(range, clip.z, change.z);
+    let there = portrait_ray(portrait, origin, direction);
     var out: Projected;
-    if range.x > range.y {
+    if there.range.x > there.range.y {
         return out;
     }
-    let start = in_image(clip + range.x * change);
-    let end = in_image(clip + range.y * change);
+    let start = in_image(there.clip + there.range.x * there.change);
+    let end = in_image(there.clip + there.range.y * there.change);
     // The part in the disc that rows cover.
     let middle = 0.5 * f32(impostors.size);
     let from_middle = start.xy - middle;
